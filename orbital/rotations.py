@@ -178,6 +178,39 @@ def evenly_turned(out: Array, rate: Array, time: float) -> None:
 
 
 @kernel
+def turn_back(vector: Array, angle: float) -> None:
+    """What stands still, seen in a frame that has turned by an angle about its third axis [rad], in place.
+
+        tan(b/2) = angle/2,   vector turned by -b about (0, 0, 1)
+
+    Valid    |angle| well below 1; b is short of it by angle^3 / 12
+    Source   Cayley's map, which needs no trigonometry and so rounds alike everywhere
+    Checked  tests/orbital/test_rotations.py
+    """
+    x = vector[0]
+    y = vector[1]
+    s = 2.0 / (1.0 + 0.25 * angle * angle)
+    vector[0] = x + s * (0.5 * angle * y - 0.25 * angle * angle * x)
+    vector[1] = y - s * (0.5 * angle * x + 0.25 * angle * angle * y)
+
+
+@kernel
+def turn_attitude_back(attitude: Array, angle: float) -> None:
+    """The attitude of what stands still, seen in a frame that has turned as for `turn_back`, in place and normalised.
+
+    Valid    as `turn_back`, and by the same angle to rounding
+    Checked  tests/orbital/test_rotations.py
+    """
+    half = 0.5 * angle
+    w, x, y, z = attitude[0], attitude[1], attitude[2], attitude[3]
+    attitude[0] = w + half * z
+    attitude[1] = x + half * y
+    attitude[2] = y - half * x
+    attitude[3] = z - half * w
+    normalise(attitude, attitude)
+
+
+@kernel
 def to_rotation_vector(out: Array, q: Array) -> float:
     """Angle of the rotation [rad], 0 to pi; out becomes its rotation vector [rad].
 

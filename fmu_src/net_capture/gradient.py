@@ -11,8 +11,8 @@ The spin is kicked for half a substep before and after the target has turned:
 
     S <- S + h/2 tau(q),   (q, S) turn freely by h,   S <- S + h/2 tau(q)
 
-So spin and attitude are always of one instant, and what contact does between them stays as it is. Free turning is done
-in axes at rest, which turn with the frame afterwards (`target.make_drift`); the whole is of second order.
+So spin and attitude are always of one instant, and what contact does between them stays as it is. The whole is of
+second order, as the free turning is.
 
 Valid    bodies much smaller than r; circular orbit
 Source   Hughes, Spacecraft Attitude Dynamics (1986), section 8.1; the splitting is Stormer's and Verlet's
@@ -28,11 +28,10 @@ from typing import Any, NamedTuple
 from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.net_capture.target import turn_back
 from fmu_src.rows import output, state, vector
 from orbital.kernel import kernel
 from orbital.rigid import gradient_torque
-from orbital.rotations import rotate, rotate_inverse
+from orbital.rotations import rotate, rotate_inverse, turn_back
 
 ORBITS = ("hill",)
 """Gravities of an orbit round the Earth."""

@@ -85,7 +85,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
             target.measure(p)
             if swings:
                 show_hinge(p, ahead)
-            target.turn(p.target_attitude, p.target_pose, p.target_rate, p, frame_rate(p), ahead)
+            target.show(p, frame_rate(p), ahead)
             quality.add_body_momenta(p, p.target_mass, p.target_position, p.target_velocity)
             for axis in range(3):
                 p.angular_momentum[axis] += p.target_spin[axis]

@@ -18,7 +18,7 @@ from fmu_src.net_capture.hinge.motion import Hinge, make_hinge
 from fmu_src.net_capture.refusal import Refusal, Scene, text
 from fmu_src.rows import at_least_zero, moving, output, parameter, positive, state, vector
 from orbital.kernel import kernel
-from orbital.rotations import multiply, normalise, rotate, rotate_inverse
+from orbital.rotations import multiply, normalise, rotate, rotate_inverse, turn_attitude_back, turn_back
 from orbital.vectors import dot
 
 BEYOND_REACH = 0.55
@@ -74,7 +74,7 @@ ROWS = (
     state("target_drift[#]", "m/s", "velocity of the centre of mass half a substep back", shape=(3,)),
     state("target_pose[#]", "1", "attitude at the last substep", shape=(4,)),
     state("target_middle[#]", "1", "attitude half way through a substep", shape=(4,)),
-    state("target_turning[#]", "rad/s", "a body rate and the frame's, for the step", shape=(6,)),
+    state("target_turning[#]", "rad/s", "a body rate, for the step", shape=(3,)),
     state("half_size[#]", "m", "half the edges of the box around the target", shape=(3,)),
     state("shape_half[#]", "m", "of the box that holds the sample points", shape=(3,)),
     state("envelope_radius", "m", "of the sphere around the target"),
@@ -114,7 +114,7 @@ class Target(NamedTuple):
     place(p) -> fault              put it into its start attitude and rate at the origin
     drift(p, frame_rate, h)        move and turn it by one substep with its momenta held
     measure(p)                     rate and energy from its momenta
-    turn(out, attitude, rate, p, frame_rate, h)   out = attitude after a time
+    show(p, frame_rate, ahead)     attitude a time on [s]
     sample(p, out, number)         out = a sample point in the frame [m], below where any part of the net comes
     hinge                          kernels of the appendage that swings, see `hinge.motion`; None: it is one rigid body
     """
@@ -123,7 +123,7 @@ class Target(NamedTuple):
     place: Any
     drift: Any
     measure: Any
-    turn: Any
+    show: Any
     sample: Any
     hinge: Hinge | None = None
 
@@ -171,22 +171,17 @@ def rate_from_spin(p, out, attitude):
 
 
 @kernel
-def turn(out, attitude, rate, p, frame_rate, h):
-    """out = attitude after h [s] at a body rate, seen in a frame that turns about its third axis.
+def turn(out, attitude, rate, h):
+    """out = attitude after a time [s] at a body rate, in axes at rest.
 
-        q' = q (1, h w / 2) / sqrt(1 + |h w|^2 / 4),   w = rate - R^T (0, 0, frame_rate)
+        q' = q (1, h w / 2) / sqrt(1 + |h w|^2 / 4),   w = rate
 
     Valid    |h w| well below 1; the angle is short of h w by its (h w)^2 / 12
     Checked  tests/net_capture/test_contact.py
     """
-    frame = p.target_turning[3:6]
-    frame[0] = 0.0
-    frame[1] = 0.0
-    frame[2] = frame_rate
-    rotate_inverse(frame, attitude, frame)
-    x = 0.5 * h * (rate[0] - frame[0])
-    y = 0.5 * h * (rate[1] - frame[1])
-    z = 0.5 * h * (rate[2] - frame[2])
+    x = 0.5 * h * rate[0]
+    y = 0.5 * h * rate[1]
+    z = 0.5 * h * rate[2]
     a = attitude[0]
     b = attitude[1]
     c = attitude[2]
@@ -198,25 +193,12 @@ def turn(out, attitude, rate, p, frame_rate, h):
     normalise(out, out)
 
 
-@kernel
-def turn_back(vector, angle):
-    """What is constant in inertial space turns backwards in a frame that has turned by an angle about its third axis.
+def make_turning(frame_turns: bool) -> tuple[Any, Any]:
+    """Kernels that turn the target by a substep with its momenta held, and that tell its attitude a time on.
 
-    Valid    |angle| well below 1; the turn is short of it by its angle^2 / 12
-    Checked  tests/net_capture/test_contact.py
-    """
-    x = vector[0]
-    y = vector[1]
-    s = 2.0 / (1.0 + 0.25 * angle * angle)
-    vector[0] = x + s * (0.5 * angle * y - 0.25 * angle * angle * x)
-    vector[1] = y - s * (0.5 * angle * x + 0.25 * angle * angle * y)
+    frame_turns   whether the frame turns about its third axis
 
-
-def make_drift(at_rest: bool) -> Any:
-    """Kernel that moves and turns the target by one substep with its momenta held.
-
-    at_rest   the body turns in axes at rest, which then turn as the frame does: of second order in a frame that turns
-              too, where turning both at once is of first order, by n h times the body's rate
+    The body turns in axes at rest, and these turn back as the frame turns: of second order in every frame.
     """
 
     @kernel
@@ -228,22 +210,26 @@ def make_drift(at_rest: bool) -> Any:
         for i in range(3):
             p.target_place[i] += h * p.target_drift[i]
         half = p.target_middle
-        rate = p.target_turning[0:3]
-        seen = 0.0 if at_rest else frame_rate
+        rate = p.target_turning
         rate_from_spin(p, rate, p.target_pose)
-        turn(half, p.target_pose, rate, p, seen, 0.5 * h)
+        turn(half, p.target_pose, rate, 0.5 * h)
         rate_from_spin(p, rate, half)
-        turn(p.target_pose, p.target_pose, rate, p, seen, h)
-        if at_rest:
-            half[0] = 1.0
-            half[1] = 0.0
-            half[2] = 0.0
-            half[3] = -0.5 * frame_rate * h
-            multiply(p.target_pose, half, p.target_pose)
-            normalise(p.target_pose, p.target_pose)
-        turn_back(p.target_spin, frame_rate * h)
+        turn(p.target_pose, p.target_pose, rate, h)
+        if frame_turns:
+            turn_attitude_back(p.target_pose, frame_rate * h)
+            turn_back(p.target_spin, frame_rate * h)
 
-    return drift
+    @kernel
+    def show(p, frame_rate, ahead):
+        """Attitude a time on [s].
+
+        Checked  tests/net_capture/test_contact.py
+        """
+        turn(p.target_attitude, p.target_pose, p.target_rate, ahead)
+        if frame_turns:
+            turn_attitude_back(p.target_attitude, frame_rate * ahead)
+
+    return drift, show
 
 
 @kernel
@@ -303,7 +289,7 @@ def make_target(composition: Any, part: Term) -> Target:
         if given_otherwise:
             axes(p, p.target_middle)
             multiply(p.target_pose, p.target_pose, p.target_middle)
-        spin = p.target_turning[0:3]
+        spin = p.target_turning
         for i in range(3):
             p.target_place[i] = 0.0
             p.target_drift[i] = 0.0
@@ -352,6 +338,7 @@ def make_target(composition: Any, part: Term) -> Target:
             p.target_place[i] += h * p.target_drift[i]
         drift_hinge(p, frame_rate, h)
 
+    drift, show = make_turning(composition.gravity.turns)
     if hinge is not None:
-        return Target(shape, place, drift_both, measure_hinge, turn, sample, hinge)
-    return Target(shape, place, make_drift("gravity_gradient" in composition.terms), measure_target, turn, sample)
+        return Target(shape, place, drift_both, measure_hinge, show, sample, hinge)
+    return Target(shape, place, drift, measure_target, show, sample)

@@ -41,6 +41,19 @@ def test_an_even_turn_against_scipy(run, angle):
     np.testing.assert_allclose(q, Rotation.from_rotvec(angle * axis).as_quat(scalar_first=True), rtol=0, atol=3e-16)
 
 
+@pytest.mark.parametrize("angle", [0.0, 1e-7, 0.01, 0.3, -0.3])
+def test_what_stands_still_turns_back_in_a_frame_that_turns(run, angle):
+    """Vector and attitude alike, by the angle whose half has angle/2 as its tangent."""
+    turned = Rotation.from_rotvec([0.0, 0.0, -2.0 * math.atan(0.5 * angle)])
+    vector, attitude = np.array([3.0, -4.0, 5.0]), quaternion([0.4, 0.9, -1.3])
+    start = vector.copy(), peer(attitude)
+    run(rotations.turn_back)(vector, angle)
+    run(rotations.turn_attitude_back)(attitude, angle)
+    np.testing.assert_allclose(vector, turned.apply(start[0]), rtol=0, atol=2e-15)
+    np.testing.assert_allclose(peer(attitude).as_matrix(), (turned * start[1]).as_matrix(), rtol=0, atol=1e-15)
+    assert np.linalg.norm(attitude) == pytest.approx(1.0, abs=3e-16)
+
+
 @pytest.mark.parametrize("length", [1.0, 0.3, 1e3, -2.0])
 def test_matrix_of_a_quaternion_of_any_length(run, length):
     """Each of the nine elements is that of the direction alone."""

@@ -61,6 +61,11 @@ class Gravity(NamedTuple):
     watch: Any = None
     given: Any = None
 
+    @property
+    def turns(self) -> bool:
+        """Whether the frame turns."""
+        return self.rate is not still.rate
+
 
 def gravities() -> dict[str, Any]:
     """Every gravity's term, by name."""

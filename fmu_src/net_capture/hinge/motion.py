@@ -49,7 +49,7 @@ from fmu_src.net_capture.hinge.numbers import (
     YIELDS,
 )
 from orbital.kernel import kernel
-from orbital.rotations import multiply, normalise, rotate
+from orbital.rotations import normalise, rotate, turn_attitude_back, turn_back
 from orbital.vectors import dot
 
 FINE = 0.1
@@ -217,20 +217,10 @@ def make_hinge(composition: Any) -> Hinge:
         steps = 1 + int(h * max(fastest, turning) / FINE)
         for _ in range(steps):
             advance(p, body, h / steps)
-        # both turn back in the frame by the same angle
-        angle = frame_rate * h
-        x = p.target_spin[0]
-        z = p.target_spin[1]
-        s = 2.0 / (1.0 + 0.25 * angle * angle)
-        p.target_spin[0] = x + s * (0.5 * angle * z - 0.25 * angle * angle * x)
-        p.target_spin[1] = z - s * (0.5 * angle * x + 0.25 * angle * angle * z)
-        back = p.target_middle
-        back[0] = 1.0
-        back[1] = 0.0
-        back[2] = 0.0
-        back[3] = -0.5 * angle
-        multiply(p.target_pose, back, y[0:4])
-        normalise(p.target_pose, p.target_pose)
+        for i in range(4):
+            p.target_pose[i] = y[i]
+        turn_attitude_back(p.target_pose, frame_rate * h)
+        turn_back(p.target_spin, frame_rate * h)
         settle(p)
         stop(p, body)
 
