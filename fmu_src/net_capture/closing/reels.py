@@ -284,17 +284,6 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
                     _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i], p.cord_most[i], top)
 
     @kernel
-    def loose(p, work, i):
-        """Whether the cord of pair i is slack that the reel is to wind: a slack one may come to lie however it can.
-
-        Checked  tests/net_capture/test_slack_cord.py
-        """
-        if p.closing_slack != WOUND:
-            return False
-        distance, _ = along_now(p, work, i)
-        return distance < p.cord_length[i]
-
-    @kernel
     def wind(p, work):
         """Wind the reels by the substep at whose end the bullets now are.
 
@@ -306,8 +295,8 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
         total = 0.0
         for i in range(p.net_corners):
             if bends:
-                fallen = meet(p, work, i, loose(p, work, i))
-                if fallen > 0.0:
+                fallen = meet(p, work, i, False)
+                if fallen != 0.0:
                     distance, _ = along_now(p, work, i)
                     p.wrap_slip_loss += cord_energy(p, distance + fallen, p.cord_length[i])
                     p.wrap_slip_loss -= cord_energy(p, distance, p.cord_length[i])
