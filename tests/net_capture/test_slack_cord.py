@@ -87,10 +87,12 @@ def test_a_reel_that_jams_keeps_the_slack_that_it_has_not_wound(shoot, time):
     assert lengths[1] == pytest.approx(10.0 - until, abs=1.01 * LAW["closing.speed"] * net["solver.substep"])
 
 
-def test_a_cord_that_is_stretched_at_the_start_holds_nothing_yet(shoot):
-    """Bullets fly apart beyond the side of the mouth before the reels start; what the net stores the cord does not."""
+@pytest.mark.parametrize("jams", [1e9, 0.0])
+def test_a_cord_that_is_stretched_at_the_start_holds_nothing_yet(shoot, jams):
+    """Bullets fly apart beyond the side of the mouth before the reels start; what the net stores the cord does not.
+    Nor does that of a reel that has jammed."""
     own = {"net.fold_side": 9.9, "net.mass": 0.1, "net.youngs_modulus": 1e7, "bullets.speed": 3.0}
-    net = shoot(SPRUNG | ALONE | LAW | WOUND | own | {"closing.time": 0.1}, HOLDING)
+    net = shoot(SPRUNG | ALONE | LAW | WOUND | own | {"closing.time": 0.1, "jam.time": jams}, HOLDING)
     net.step(0.1)
     assert min(sides(net)) > 10.01
     assert net.array("cord_length")[:4] == pytest.approx(sides(net), rel=1e-12)

@@ -277,11 +277,10 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
                 if bends:
                     meet(p, work, i, True)
                 top = top_speed(p, i)
-                if top > 0.0:
-                    distance, rate = along_shown(p, work, i)
-                    least = p.cord_length[i] if p.closing_slack == WOUND else p.closing_lock_length
-                    p.cord_length[i] = max(distance, least)
-                    _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i], p.cord_most[i], top)
+                distance, rate = along_shown(p, work, i)
+                keeps_slack = top == 0.0 or p.closing_slack == WOUND
+                p.cord_length[i] = max(distance, p.cord_length[i] if keeps_slack else p.closing_lock_length)
+                _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i], p.cord_most[i], top)
 
     @kernel
     def wind(p, work):
