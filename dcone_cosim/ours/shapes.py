@@ -10,8 +10,8 @@ import numpy as np
 
 from fmu_src.interface import Term
 from fmu_src.net_capture import force_map
-from fmu_src.net_capture.appendage.laying import corners_at
-from fmu_src.net_capture.hinge.numbers import BODY
+from fmu_src.net_capture.appendage.laying import corners_at, swung
+from fmu_src.net_capture.hinge import numbers as hinge
 from fmu_src.net_capture.interface import NETS, TARGETS, rigged_of
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.hull import CORNERS
@@ -74,7 +74,25 @@ def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Sur
 
 def target_swing(values: Mapping[str, Any], terms: Mapping[str, str]) -> Callable[[float], Any] | None:
     """Function of the angle of its hinge [rad]: corners of the target (n, 3) [m], body axes; None of one rigid body."""
-    return partial(corners_at, values) if "hinge" in terms and BODY in values else None
+    return partial(corners_at, values) if "hinge" in terms and hinge.BODY in values else None
+
+
+def target_hinge(values: Mapping[str, Any], terms: Mapping[str, str]) -> dict[str, Any] | None:
+    """Which corners of the target swing, a point of the hinge's axis [m], its direction, and `lag`, the way from that
+    point to the appendage's centre of mass at angle 0 times its share of the mass [m], body axes; None of one rigid
+    body.
+
+    Checked  tests/report/test_swing.py
+    """
+    if "hinge" not in terms or hinge.BODY not in values:
+        return None
+    table = values[hinge.BODY]
+    return {
+        "corners": swung(values),
+        "hinge": table[hinge.HINGE : hinge.AXIS],
+        "axis": table[hinge.AXIS : hinge.ARM],
+        "lag": table[hinge.SHARE] * table[hinge.ARM : hinge.REST],
+    }
 
 
 def towed_surface(term: str) -> str:

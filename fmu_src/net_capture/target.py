@@ -300,7 +300,9 @@ def make_target(composition: Any, part: Term) -> Target:
             spin[i] = principal[i] * p.target_rate[i]
         rotate(p.target_spin, p.target_pose, spin)
         if swings:
-            place_hinge(p)
+            fault = place_hinge(p)
+            if fault != 0:
+                return fault
         p.target_thickness = math.inf
         p.target_edge = 0.0
         measure_shape(p)

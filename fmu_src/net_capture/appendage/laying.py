@@ -94,6 +94,16 @@ def _table(content: bytes, shape: tuple[int, int], place: bytes, axis: bytes, li
     return table
 
 
+def swung(values: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
+    """Which corners of the pieces swing, in the order in which they are drawn (n,).
+
+    Checked  tests/net_capture/test_hinged_contact.py, tests/report/test_swing.py
+    """
+    table, found = values[at.BODY], list(in_body_axes(values[PIECES]))
+    numbers = [len(of.drawn(piece)[0]) for piece in found]
+    return np.repeat(table[at.PIECES : at.PIECES + len(found)] != 0.0, numbers)
+
+
 def corners_at(values: Mapping[str, Any], angle: float) -> Array:
     """Corners of the pieces (n, 3) [m], in the order in which they are drawn, at an angle; body axes, from the centre
     of mass as it is then.
@@ -103,11 +113,9 @@ def corners_at(values: Mapping[str, Any], angle: float) -> Array:
     table = values[at.BODY]
     hinge, turn = table[at.HINGE : at.AXIS], turn_about(table[at.AXIS : at.ARM], angle)
     shift = table[at.SHARE] * (turn - np.eye(3)) @ table[at.ARM : at.REST]
-    found = []
-    for number, piece in enumerate(in_body_axes(values[PIECES])):
-        corners = np.array(of.drawn(piece)[0])
-        found.append(hinge + (corners - hinge) @ turn.T if table[at.PIECES + number] else corners)
-    return np.asarray(np.vstack(found) - shift)
+    corners = np.vstack([of.drawn(piece)[0] for piece in in_body_axes(values[PIECES])])
+    moved = np.where(swung(values)[:, None], hinge + (corners - hinge) @ turn.T, corners)
+    return np.asarray(moved - shift)
 
 
 def rows(values: Mapping[str, Any]) -> Iterator[Implied]:
@@ -144,6 +152,19 @@ def matrix(table: Array, angle: float) -> tuple[Array, Array]:
     return found, s
 
 
+def lightest(table: Array) -> float:
+    """Least moment that the hinge feels within its limit, the target free, over the mass of the whole [m2].
+
+    Checked  tests/net_capture/test_hinge_extremes.py
+    """
+    return min(1.0 / float(np.linalg.inv(matrix(table, angle)[0])[3, 3]) for angle in _angles(table[at.LIMIT]))
+
+
+def _angles(limit: float) -> Array:
+    """From beyond the limit on one side to beyond that on the other [rad]."""
+    return np.linspace(-limit - BEYOND, limit + BEYOND, ANGLES)
+
+
 def _reach(
     table: Array, whole: solids.Solid, found: list[of.Piece], swings: npt.NDArray[np.bool_], limit: float
 ) -> None:
@@ -156,7 +177,7 @@ def _reach(
     )  # fmt: skip
     half, radius, reach, yields = np.zeros(3), 0.0, 0.0, 0.0
     girths = []
-    for number, angle in enumerate(np.linspace(-limit - BEYOND, limit + BEYOND, ANGLES)):
+    for number, angle in enumerate(_angles(limit)):
         turn = turn_about(axis, angle)
         masses, slope = matrix(table, angle)
         light = np.linalg.inv(masses)
