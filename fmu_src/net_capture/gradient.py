@@ -53,24 +53,6 @@ class Gradient(NamedTuple):
     measure: Any
 
 
-@kernel
-def _of_one(p):
-    """Inertia of a rigid target, body axes [kg m2] (3, 3).
-
-    Checked  tests/net_capture/test_gradient.py
-    """
-    return p.gradient_inertia
-
-
-@kernel
-def _of_both(p):
-    """Inertia of a target and its appendage at the angle of now, body axes [kg m2] (3, 3).
-
-    Checked  tests/net_capture/test_hinged_gradient.py
-    """
-    return p.hinge_whole
-
-
 def make(composition: Any) -> Gradient:
     """Kernels for the composition's gravity."""
     strength = composition.gravity.gradient
@@ -78,7 +60,6 @@ def make(composition: Any) -> Gradient:
         raise ValueError(f"net_capture: a gravity gradient needs gravity = {' or '.join(map(repr, ORBITS))}")
     hinge = composition.target.hinge
     swings, lean = hinge is not None, hinge.lean if hinge is not None else None
-    whole = _of_both if swings else _of_one
 
     @kernel
     def start(p):
@@ -104,14 +85,18 @@ def make(composition: Any) -> Gradient:
 
     @kernel
     def find_torque(p, out):
-        """out = torque on the target at its attitude of now, orbital axes [N m].
+        """out = torque on the target at its attitude, and angle of its hinge, of now, orbital axes [N m].
 
             tau = R (3 mu/r^3 u x I u)
 
         Checked  tests/net_capture/test_gradient.py
         """
         upward(p, p.gradient_up)
-        gradient_torque(out, whole(p), p.gradient_up, strength(p))
+        if swings:
+            for i in range(3):
+                for j in range(3):
+                    p.gradient_inertia[i, j] = p.hinge_whole[i, j]
+        gradient_torque(out, p.gradient_inertia, p.gradient_up, strength(p))
         rotate(out, p.target_pose, out)
 
     @kernel
@@ -145,7 +130,7 @@ def make(composition: Any) -> Gradient:
         Checked  tests/net_capture/test_gradient.py
         """
         find_torque(p, p.gravity_gradient_torque)
-        inertia, up = whole(p), p.gradient_up
+        inertia, up = p.gradient_inertia, p.gradient_up
         total = 0.0
         for i in range(3):
             total -= inertia[i, i] / 3.0

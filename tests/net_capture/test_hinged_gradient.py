@@ -121,9 +121,8 @@ def test_it_turns_and_swings_as_two_bodies_in_the_tide(swinging):
         assert np.polyfit(np.log(steps), np.log(error), 1)[0] == pytest.approx(2.0, abs=0.1)
     swinging.place(damping=DAMPING).advance(400.0, 0.02)
     assert apart(swinging, wanted).max() < 1e-6
-    assert abs(wanted[1] - ANGLE) > 0.1
-    for share in (0.0, 0.99):
-        assert apart(swinging, by_scipy(400.0, share=share)).min() > 3e-5
+    assert np.abs(apart(swinging, by_scipy(400.0, share=0.0))).min() > 3e-3
+    assert apart(swinging, by_scipy(400.0, share=0.99)).min() > 3e-5
 
 
 def test_what_acts_on_the_hinge_is_the_slope_of_the_potential(swinging):
