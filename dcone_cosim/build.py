@@ -58,6 +58,7 @@ from dcone_cosim.ours.models import (
 from dcone_cosim.ours.shapes import (
     Drawing,
     Surface,
+    appendage_held,
     force_cells,
     hull_corners,
     line_mass,
@@ -110,6 +111,7 @@ __all__ = [
     "air_of",
     "all_rows",
     "all_tables",
+    "appendage_held",
     "asked_names",
     "asked_variables",
     "beside",

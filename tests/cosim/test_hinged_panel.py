@@ -51,7 +51,7 @@ def test_the_scene_that_is_shipped() -> None:
         (lambda s: s.replace('start_rate = "10 deg/s"', 'start_angle = "91 deg"'), "within hinge.limit, 90 deg"),
         (lambda s: s.replace("[capture.contact]", "[capture.wrap]\n\n[capture.contact]"), "cannot go together"),
         (lambda s: s.replace("[capture.contact]", "[capture.force_map]\n\n[capture.contact]"), "cannot go together"),
-        (lambda s: s + TOW, "what is handed over to or from a removal is one rigid target"),
+        (lambda s: s + TOW, "is held fast by the removal that follows, which needs for it"),
         (without_hinge, "piece 2 says `hinged = true`, which needs the table [capture.hinge]"),
         (
             lambda s: s.replace('shape = "union"', f'shape = "union"\n{INERTIA}'),

@@ -118,6 +118,26 @@ def corners_at(values: Mapping[str, Any], angle: float) -> Array:
     return np.asarray(moved - shift)
 
 
+def held_at(values: Mapping[str, Any], angle: float) -> dict[str, Array]:
+    """The appendage at an angle of its hinge, body axes, places from the centre of mass of the whole as it is then:
+    `mass` [kg] (1,), `inertia` about its own centre of mass [kg m2] (3, 3), `center` of its mass, `hinge`, a point of
+    the axis [m] (3,), and `axis` (3,).
+
+    Checked  tests/cosim/test_hinge_handed_over.py
+    """
+    table, mass = values[at.BODY], float(values["target.mass"])
+    turn, arm = turn_about(table[at.AXIS : at.ARM], angle), table[at.ARM : at.REST]
+    hinge = table[at.HINGE : at.AXIS] - table[at.SHARE] * (turn @ arm - arm)
+    inertia = mass * turn @ table[at.INERTIA : at.LIMIT].reshape(3, 3) @ turn.T
+    return {
+        "mass": mass * table[at.SHARE : at.SHARE + 1],
+        "inertia": inertia,
+        "center": hinge + turn @ arm,
+        "hinge": hinge,
+        "axis": table[at.AXIS : at.ARM],
+    }
+
+
 def rows(values: Mapping[str, Any]) -> Iterator[Implied]:
     """What a scene's hinge comes to: the moment that its spring feels, its frequency and damping, the least girth."""
     table, mass = values[at.BODY], values["target.mass"]
