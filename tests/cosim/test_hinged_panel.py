@@ -9,6 +9,11 @@ from dcone_cosim import build
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.handoff import require_rigid
 from dcone_cosim.loading import load, shipped
+from dcone_cosim.phases import capture_clip
+from dcone_cosim.phases.capture_report import findings
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import SceneError
 from tests.cosim.test_warnings import cautions
 
@@ -75,6 +80,43 @@ def test_a_capture_that_tells_of_a_hinge_hands_nothing_over() -> None:
     require_rigid(("target.attitude[1]",))
     with pytest.raises(HandoffError, match="an appendage that swings"):
         require_rigid(("target.attitude[1]", "hinge.angle"))
+
+
+def swung() -> PhaseResult:
+    """Rows of a capture whose wing swings."""
+    angle, place = np.radians([0.0, 12.0, -9.0, 4.0]), np.zeros(4)
+    rows = {"hinge.angle": ("rad", "Real", angle), "hinge.loss": ("J", "Real", np.array([0.0, 0.1, 0.25, 0.3]))}
+    rows |= {f"{body}.position[{i}]": ("m", "Real", place + i) for body in ("chaser", "target") for i in (1, 2, 3)}
+    rows |= {f"target.attitude[{i}]": ("1", "Real", place + (i == 1)) for i in (1, 2, 3, 4)}
+    return PhaseResult("capture", 0.0, Recorder.of({"time": ("s", "Real", np.arange(4.0)), **rows}))
+
+
+def test_a_run_tells_how_far_it_swung() -> None:
+    found = {one.key: one for one in findings(RunResult(scene=Scene("one", "", "", ())), swung())}
+    told = {name: (one.value, one.unit, one.shown_in) for name, one in found.items() if name.startswith("hinge.")}
+    assert told == {
+        "hinge.loss": (0.3, "J", ""),
+        "hinge.angle_max": (np.radians(12.0), "rad", "deg"),
+        "hinge.angle_min": (np.radians(-9.0), "rad", "deg"),
+        "hinge.angle": (np.radians(4.0), "rad", "deg"),
+    }
+    (chart,) = (one for one in capture_clip.charts(swung(), ()) if one.key == "hinge")
+    np.testing.assert_allclose(chart.series[0].y, [0.0, 12.0, -9.0, 4.0])
+    assert chart.unit == "deg"
+
+
+def test_a_page_has_the_angle_of_its_frames() -> None:
+    """And which corners swing: those of boom and wing."""
+    phase = load(NAME).phases[0]
+    run = RunResult(scene=Scene("one", "", "", (phase,)), parameters={"capture": dict(phase.main.values)})
+    clip = capture_clip.clip(run, phase, swung(), ())
+    assert clip is not None
+    assert clip.swing is not None
+    assert clip.surface is not None
+    np.testing.assert_allclose(np.degrees(clip.swing.angle), [0.0, 12.0, -9.0, 4.0])
+    assert clip.swing.corners.sum() == len(clip.surface[0]) - 8
+    assert not clip.swing.corners[:8].any()
+    assert not any("hinge" in note for note in clip.notes)
 
 
 def test_pictures_follow_the_angle() -> None:
