@@ -75,7 +75,8 @@ def test_a_part_that_swings_is_where_its_hinge_puts_it(browser: Browser) -> None
     for frame, angle in enumerate(angles):
         told = browser.ask(
             f"{begun} b.show({frame}); b.body.updateMatrixWorld(true);"
-            " return b.clip.surface.corners.map(([r, a, c], n) => (b.clip.swing.corners[n] ? part : rest).localToWorld(new THREE.Vector3(a, r, -c)).toArray()); })()"
+            " return b.clip.surface.corners.map(([r, a, c], n) => (b.clip.swing.corners[n] ? part : rest)"
+            ".localToWorld(new THREE.Vector3(a, r, -c)).toArray()); })()"
         )
         wanted = at[frame] + attitude[frame].apply(swing(float(angle)))
         np.testing.assert_allclose(told, wanted[:, [1, 0, 2]] * [1.0, 1.0, -1.0], atol=1e-6)
