@@ -48,9 +48,9 @@ def told(law):
     return tell, fly
 
 
-@pytest.mark.parametrize("factor", [1e-8, 1e6])
+@pytest.mark.parametrize("factor", [1e-8, 1e4])
 def test_next_to_nothing_on_its_hinge_or_all_of_it(law, told, factor):
-    """A wing of half a milligramme, and one of fifty thousand tonnes: both as two bodies that constraints hold."""
+    """A wing of half a milligramme, and one of 500 tonnes: both as two bodies that constraints hold."""
     tell, fly = told
     entries = heavier(factor)
     soft = factor * 4.0 if factor < 1.0 else 4.0
@@ -60,8 +60,8 @@ def test_next_to_nothing_on_its_hinge_or_all_of_it(law, told, factor):
     energy = float(scene.p["target_energy"] + scene.p["hinge_energy"])
     fly(scene.record, 2e-3, 1500)
     end = two.fly(two.start(attitude, attitude.apply(RATE), 0.0, 0.3), 3.0)
-    assert scene.p["hinge_now"][6] == pytest.approx(two.angle(end), abs=1e-6)
-    assert (design_attitude(scene, tables) * two.parts(end)[0][1].inv()).magnitude() < 1e-6
+    assert scene.p["hinge_now"][6] == pytest.approx(two.angle(end), abs=1e-8)
+    assert (design_attitude(scene, tables) * two.parts(end)[0][1].inv()).magnitude() < 1e-8
     tell(scene.record)
     assert scene.p["target_energy"] + scene.p["hinge_energy"] == pytest.approx(energy, rel=1e-9)
 
