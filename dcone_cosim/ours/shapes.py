@@ -10,9 +10,10 @@ import numpy as np
 
 from fmu_src.interface import Term
 from fmu_src.net_capture import force_map
-from fmu_src.net_capture.appendage.laying import corners_at, held_at, swung
+from fmu_src.net_capture.appendage.laying import corners_at, held_at, pieces_at, swung
 from fmu_src.net_capture.hinge import numbers as hinge
 from fmu_src.net_capture.interface import NETS, TARGETS, rigged_of
+from fmu_src.net_capture.shapes.union import PIECES
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.hull import CORNERS
 from orbital.corners import few_corners
@@ -75,6 +76,17 @@ def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Sur
 def target_swing(values: Mapping[str, Any], terms: Mapping[str, str]) -> Callable[[float], Any] | None:
     """Function of the angle of its hinge [rad]: corners of the target (n, 3) [m], body axes; None of one rigid body."""
     return partial(corners_at, values) if "hinge" in terms and hinge.BODY in values else None
+
+
+def target_at(values: Mapping[str, Any], terms: Mapping[str, str], angle: float) -> Mapping[str, Any]:
+    """Values of the target with its hinge at an angle [rad], for what asks of its surface then; of one rigid body the
+    same.
+
+    Checked  tests/cosim/test_hinged_panel.py
+    """
+    if "hinge" not in terms or hinge.BODY not in values:
+        return values
+    return {**values, PIECES: pieces_at(values, angle)}
 
 
 def target_hinge(values: Mapping[str, Any], terms: Mapping[str, str]) -> dict[str, Any] | None:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build
+from dcone_cosim.criteria import Evidence
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.handoff import require_rigid
 from dcone_cosim.loading import load, shipped
-from dcone_cosim.phases import capture_clip
+from dcone_cosim.phases import capture_clip, capture_criteria
 from dcone_cosim.phases.capture_report import findings
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import PhaseResult, RunResult
@@ -136,3 +137,20 @@ def test_pictures_follow_the_angle() -> None:
     before, after = drawn[-8:] - edge, moved[-8:] + away - edge
     c, s = np.cos(0.5), np.sin(0.5)
     np.testing.assert_allclose(after, before @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]]), atol=1e-12)
+
+
+@pytest.mark.parametrize(("angle", "depth"), [(0.5, 0.05), (0.0, 0.0), (-0.5, 0.0)])
+def test_how_deep_a_node_lies_is_judged_at_the_angle(angle: float, depth: float) -> None:
+    """A node in the middle of the wing as it is at 0.5 rad is half its thickness deep there, and out at other angles."""
+    main = load(NAME).phases[0].main
+    values = {**main.values, **main.made}
+    swing = build.target_swing(values, main.terms)
+    assert swing is not None
+    middle = swing(0.5)[-8:].mean(axis=0)
+    columns = {"time": np.zeros(1), "hinge.angle": np.array([angle])}
+    columns |= {f"target.position[{i}]": np.array([float(i)]) for i in (1, 2, 3)}
+    columns |= {f"target.attitude[{i}]": np.array([float(i == 1)]) for i in (1, 2, 3, 4)}
+    nodes = {0: np.array([middle + [1.0, 2.0, 3.0]])}
+    evidence = Evidence(columns, values, main.terms, 1.0, nodes=nodes)
+    (found,) = capture_criteria._depth(evidence)
+    assert found.value == pytest.approx(depth, abs=1e-12)

@@ -104,6 +104,21 @@ def swung(values: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
     return np.repeat(table[at.PIECES : at.PIECES + len(found)] != 0.0, numbers)
 
 
+def pieces_at(values: Mapping[str, Any], angle: float) -> Array:
+    """The table of the pieces at an angle, body axes, from the centre of mass as it is then (n, WORDS).
+
+    Checked  tests/net_capture/test_hinged_contact.py
+    """
+    table, rows = values[at.BODY], np.array(values[PIECES])
+    hinge, turn = table[at.HINGE : at.AXIS], turn_about(table[at.AXIS : at.ARM], angle)
+    for row, swings in zip(rows, table[at.PIECES : at.PIECES + len(rows)], strict=True):
+        if swings:
+            row[5:8] = hinge + turn @ (row[5:8] - hinge)
+            row[8:17] = (turn @ row[8:17].reshape(3, 3)).ravel()
+    rows[:, 5:8] -= table[at.SHARE] * (turn - np.eye(3)) @ table[at.ARM : at.REST]
+    return rows
+
+
 def corners_at(values: Mapping[str, Any], angle: float) -> Array:
     """Corners of the pieces (n, 3) [m], in the order in which they are drawn, at an angle; body axes, from the centre
     of mass as it is then.
