@@ -141,7 +141,7 @@ def test_pictures_follow_the_angle() -> None:
 
 @pytest.mark.parametrize(("angle", "depth"), [(0.5, 0.05), (0.0, 0.0), (-0.5, 0.0)])
 def test_how_deep_a_node_lies_is_judged_at_the_angle(angle: float, depth: float) -> None:
-    """A node in the middle of the wing as it is at 0.5 rad is half its thickness deep there, and out at other angles."""
+    """A node in the middle of the wing as it is at 0.5 rad is half its thickness deep then, and else out of it."""
     main = load(NAME).phases[0].main
     values = {**main.values, **main.made}
     swing = build.target_swing(values, main.terms)
@@ -150,7 +150,7 @@ def test_how_deep_a_node_lies_is_judged_at_the_angle(angle: float, depth: float)
     columns = {"time": np.zeros(1), "hinge.angle": np.array([angle])}
     columns |= {f"target.position[{i}]": np.array([float(i)]) for i in (1, 2, 3)}
     columns |= {f"target.attitude[{i}]": np.array([float(i == 1)]) for i in (1, 2, 3, 4)}
-    nodes = {0: np.array([middle + [1.0, 2.0, 3.0]])}
+    nodes = {0: np.array([middle + np.array([1.0, 2.0, 3.0])])}
     evidence = Evidence(columns, values, main.terms, 1.0, nodes=nodes)
     (found,) = capture_criteria._depth(evidence)
     assert found.value == pytest.approx(depth, abs=1e-12)
