@@ -107,8 +107,11 @@ class Hinge(NamedTuple):
     lean: Any
 
 
-def make_hinge(composition: Any) -> Hinge:
-    """Kernels for the composition's target."""
+def make_hinge(composition: Any, touched: Any) -> Hinge:
+    """Kernels for the composition's target.
+
+    touched    kernel of its shape: whether the point of the surface found last belongs to the appendage
+    """
     too_fast = composition.code(TOO_FAST.name)
     body_of, pieces_of = composition.table(BODY), composition.table("target.pieces")
 
@@ -328,4 +331,5 @@ def make_hinge(composition: Any) -> Hinge:
         """
         p.hinge_now[7] += given * find_lean(p, body_of(p), up)
 
-    return Hinge(place, drift, measure, show, extent, follow, *make_meeting(composition), reach, largest_share, lean)
+    meeting = make_meeting(composition, touched)
+    return Hinge(place, drift, measure, show, extent, follow, *meeting, reach, largest_share, lean)
