@@ -31,6 +31,8 @@ from orbital.vectors import dot
 
 PARTS, PIECES = "target.parts", "target.pieces"
 BODIES, PLANES = "target.bodies", "target.planes"
+NOT_ASKED = -1
+"""Of whether the piece found last swings."""
 HINGED = "hinge.stiffness"
 """A value that only scenes have whose target is hinged."""
 WORDS = 18
@@ -211,18 +213,33 @@ def make(composition: Any) -> Shape:
 
     @kernel
     def distance_now(p, normal, point):
-        """The same of pieces some of which swing, as they are now; whether the nearest one does is noted.
+        """The same of pieces some of which swing, as they are now; what `touched` needs of it is noted, since that is
+        asked of few points.
 
         Checked  tests/net_capture/test_hinge.py
         """
-        rows = p.hinge_rows[0 : pieces_of(p).shape[0]]
-        found = contact_distance(rows, p.piece_room, normal, point)
-        p.hinge_touched = of_swinging(rows, p.piece_room, found, normal, point)
+        found = contact_distance(p.hinge_rows[0 : pieces_of(p).shape[0]], p.piece_room, normal, point)
+        p.hinge_touched = NOT_ASKED
+        p.hinge_gap = found
+        for i in range(3):
+            p.hinge_found[0, i] = normal[i]
+            p.hinge_found[1, i] = point[i]
         return found
 
-    if "hinge" in composition.terms:
-        distance = distance_now
+    @kernel
+    def touched(p):
+        """Whether the point of the surface found last belongs to the appendage.
+
+        Checked  tests/net_capture/test_hinged_contact.py
+        """
+        if p.hinge_touched == NOT_ASKED:
+            rows = p.hinge_rows[0 : pieces_of(p).shape[0]]
+            p.hinge_touched = of_swinging(rows, p.piece_room, p.hinge_gap, p.hinge_found[0], p.hinge_found[1])
+        return p.hinge_touched != 0
+
     solid = samples.make_solid(composition, plain_distance)._replace(distance=distance)
+    if "hinge" in composition.terms:
+        return solid._replace(distance=distance_now, swings=touched)
     if "wrap" not in composition.terms:
         return solid
     return solid._replace(hulls=Hulls(composition.table(BODIES), composition.table(PLANES)))
