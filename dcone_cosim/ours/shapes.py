@@ -94,7 +94,7 @@ def target_hinge(values: Mapping[str, Any], terms: Mapping[str, str]) -> dict[st
     point to the appendage's centre of mass at angle 0 times its share of the mass [m], body axes; None of one rigid
     body.
 
-    Checked  tests/report/test_swing.py
+    Checked  tests/report/test_browser.py
     """
     if "hinge" not in terms or hinge.BODY not in values:
         return None

@@ -97,7 +97,7 @@ def _table(content: bytes, shape: tuple[int, int], place: bytes, axis: bytes, li
 def swung(values: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
     """Which corners of the pieces swing, in the order in which they are drawn (n,).
 
-    Checked  tests/net_capture/test_hinged_contact.py, tests/report/test_swing.py
+    Checked  tests/net_capture/test_hinged_contact.py, tests/report/test_browser.py
     """
     table, found = values[at.BODY], list(in_body_axes(values[PIECES]))
     numbers = [len(of.drawn(piece)[0]) for piece in found]
