@@ -18,6 +18,7 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import (
     REMOVAL_SETS,
+    Body,
     Handoff,
     SpinSpeeds,
     held_bodies,
@@ -132,6 +133,12 @@ class HandoffRecord:
         return None if moving is None else moving.along(rotation_matrix(self.handed.attitude))
 
     @property
+    def carried(self) -> Body:
+        """The joined body as the tow begins with it: what an appendage that is held fast did became spin."""
+        joint, moving = self.handed.joint, self.appendage
+        return joint if moving is None else replace(joint, spin=joint.spin + moving.momentum)
+
+    @property
     def turns(self) -> bool:
         """Whether the removal's target turns."""
         return carries_spin(self.phase.main.defaults)
@@ -169,13 +176,14 @@ class HandoffRecord:
     def told(self) -> dict[str, Any]:
         """All of it, with units."""
         handed, bound, line = self.handed, self.bound, self.line
+        spin = float(np.linalg.norm(self.carried.spin))
         return {
             "time": {"value": self.time, "unit": "s", "clock": "since the shot"},
             "located_by": self.located_by,
             "rows": [row.as_dict() for row in self.rows],
             "cross_checks": [vars(check) for check in self.checks],
             "spin": {
-                "dropped": {"value": 0.0 if self.turns else float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
+                "dropped": {"value": 0.0 if self.turns else spin, "unit": "N m s"},
                 "attachment_speed": {"value": self.spin.attachment_speed, "unit": "m/s"},
                 "tug_speed": {"value": self.spin.tug_speed, "unit": "m/s"},
             },
@@ -183,7 +191,7 @@ class HandoffRecord:
                 "target": self.level,
                 "reason": self.reason,
                 "beyond_hull": {"value": self.shortfall if self.level == HULL else 0.0, "unit": "m"},
-                "spin": {"value": float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
+                "spin": {"value": spin, "unit": "N m s"},
                 "rate_relative_to_line": {"value": bound.rate, "unit": "rad/s"},
                 "angle_at_first_tug": {"value": bound.angle, "unit": "rad"},
                 "first_tug": {"value": bound.tug_time, "unit": "s"},
@@ -220,7 +228,7 @@ def check_before(record: HandoffRecord, options: HandoffOptions, surface: str) -
 
     surface      term of the capture's target, "" where there is none
     """
-    phase, handed, line = record.phase, record.handed, record.line
+    phase, handed, line = record.phase, replace(record.handed, joint=record.carried), record.line
     elastic, commanded = phase.setting(REST_LENGTH), phase.setting("reel.length")
     length = commanded if elastic is None else elastic
     thrust = phase.setting("thrust.level") or 0.0
@@ -317,7 +325,7 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
     handed, bound = record.handed, record.bound
     relative = handed.joint.velocity - handed.chaser.velocity
     distance = handed.joint.position - handed.chaser.position
-    spin, energy = float(np.linalg.norm(handed.joint.spin)), spin_energy(handed.joint)
+    spin, energy = float(np.linalg.norm(record.carried.spin)), spin_energy(record.carried)
     yield Finding("hand-off", "time", "handed over, after the shot", record.time, "s")
     yield Finding("hand-off", "mass", "mass of target and net", handed.joint.mass, "kg")
     yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
@@ -328,12 +336,10 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
     yield Finding("hand-off", "target_reason", "why so", record.reason)
     if record.level == HULL and record.shortfall > 0.0:
         yield Finding("hand-off", "beyond_hull", "it reaches beyond its hull there by at most", record.shortfall, "m")
-    what = ("spin", "carried over") if record.turns else ("spin_dropped", "dropped (a point target has none)")
-    yield Finding("hand-off", what[0], f"spin {what[1]}", spin, "N m s")
-    what = (
-        ("spin_energy", "of the spin carried over") if record.turns else ("spin_energy_dropped", "of the dropped spin")
-    )
-    yield Finding("hand-off", what[0], f"energy {what[1]}", energy, "J")
+    kind, what = ("", "carried over") if record.turns else ("_dropped", "dropped (a point target has none)")
+    yield Finding("hand-off", f"spin{kind}", f"spin {what}", spin, "N m s")
+    what = "energy of the spin carried over" if record.turns else "energy of the dropped spin"
+    yield Finding("hand-off", f"spin_energy{kind}", what, energy, "J")
     yield Finding(
         "hand-off", "body_rate", "target turns, relative to the tether, at", bound.rate, "rad/s", shown_in="deg/s"
     )

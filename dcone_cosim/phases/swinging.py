@@ -22,15 +22,16 @@ def faults(document: Document, capture: str) -> Iterator[Mistake]:
     mine, before, after = document.mains[capture], document.before(capture), document.after(capture)
     if mine.fmu is not None or HINGE not in mine.terms or not (before or after):
         return
+    said = document.tables[capture].get(HINGE)
     if before or after != TOW:
         text = f"goes with no {before or after}: what is handed over to or from one is one rigid target"
-        yield Mistake((capture, HINGE), None, text)
+        yield Mistake((capture, HINGE), said, text)
         return
     tow = document.mains[after]
     offered = set(APPENDAGE) <= set(tow.slots) if tow.fmu is not None else HELD in tow.terms and turns(tow.terms)
     if not offered:
         text = f"is held fast by the {after} that follows, which needs for it {SHOWN}"
-        yield Mistake((capture, HINGE), None, text)
+        yield Mistake((capture, HINGE), said, text)
     given = document.tables[after].get(HELD)
     for key, value in given.items() if isinstance(given, dict) else ():
         if any(name.partition("[")[0] == f"{HELD}.{key}" for name in APPENDAGE):

@@ -80,7 +80,9 @@ def of_model(
     interface = model.interface(part.terms)
     part.keys = dict(_keys(model.name, tuple(part.terms.items())))
     given = (table for table in build.from_files(interface.tables) if table.name not in interface.laid)
-    part.files = {table.name: table for table in (*given, *interface.sources)}
+    instead = (model.groups[name].terms[part.terms[name]] for name in part.refused if name in part.terms)
+    unasked = {table.name for term in instead for table in (*term.tables, *term.sources)}
+    part.files = {table.name: table for table in (*given, *interface.sources) if table.name not in unasked}
     part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
     _offer_slots(part, model)
     return part

@@ -271,7 +271,8 @@ def _left_out(above: str, name: str, group: build.Group) -> Iterator[str]:
         return
     yield f"# [{above}.{name}]"
     yield _selection(group, first, "# ")
-    yield from _files(name, {}, group.terms[first].tables, "# ")
+    part = group.terms[first]
+    yield from _files(name, {}, () if part.lay is not None else part.tables, "# ")
     for row in build.term_rows(group, first):
         if row.causality in build.SETTABLE and row.section == name:
             yield _default(row.key, _described(row))

@@ -88,6 +88,10 @@ def test_the_ledger_closes_with_it(plain: None) -> None:
     lost -= 0.5 * float(spun @ np.linalg.solve(found.joint.inertia, spun))
     told = {finding.key: finding.value for finding in record.findings()}
     assert told["appendage_energy"] == pytest.approx(lost, rel=1e-10)
+    assert told["spin"] == pytest.approx(float(np.linalg.norm(spun)), rel=1e-12)
+    assert told["spin_energy"] == pytest.approx(
+        0.5 * float(spun @ np.linalg.solve(found.joint.inertia, spun)), rel=1e-12
+    )
     assert told["appendage_momentum"] == pytest.approx(float(np.linalg.norm(momentum)), rel=1e-12)
     assert component.instance["appendage.energy"] == pytest.approx(lost, rel=1e-10)
     assert "lost as the appendage was held fast" in rows["kinetic energy"].account

@@ -180,6 +180,10 @@ def test_the_whole_is_handed_over_at_the_angle_of_now(handed: Handed, plain: Non
     turning = handed.target.energy() - 0.5 * handed.target.mass.sum() * drift @ drift
     assert handed.found.turning_energy == pytest.approx(turning, rel=1e-9)
     figures = {one.key: one.value for one in handed.record.findings()}
+    assert figures["spin"] == pytest.approx(np.linalg.norm(spin), rel=1e-12)
+    assert figures["spin_energy"] == pytest.approx(
+        0.5 * spin @ np.linalg.solve(handed.joint.inertia(), spin), rel=1e-10
+    )
     energy = row["kinetic energy"]
     assert energy.before - energy.after == pytest.approx(figures["energy_lost"] + figures["appendage_energy"], rel=1e-9)
     assert figures["appendage_energy"] == pytest.approx(told["appendage.energy"], rel=1e-9)

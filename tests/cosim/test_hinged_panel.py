@@ -16,6 +16,7 @@ from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import SceneError
+from dcone_cosim.scenes.new import new_scene
 from tests.cosim.test_warnings import cautions
 
 NAME = "hinged-panel"
@@ -73,7 +74,17 @@ def test_what_does_not_go_with_it_is_refused(tmp_path: Path, change, said: str) 
 def test_another_shape_is_refused(tmp_path: Path) -> None:
     scene = text()
     scene = scene[: scene.index("[[capture.target.parts]]")] + scene[scene.index("[capture.hinge]") :]
-    assert "capture.target.shape" in refused(tmp_path, scene.replace('shape = "union"', 'shape = "sphere"'))
+    told = refused(tmp_path, scene.replace('shape = "union"', 'shape = "sphere"'))
+    assert "capture.target.shape" in told
+    assert "target.parts" not in told, "which a sphere has not"
+
+
+def test_a_new_scene_shows_no_table_that_is_made_of_its_keys() -> None:
+    """A scene can not give it: what is known of both bodies follows from the pieces."""
+    (_, shown) = new_scene(shipped()["mission"].read_text(), "mission", "mine").split("# [capture.hinge]", 1)
+    keys = [line.lstrip("# ").split(" =")[0] for line in shown.split("\n\n")[0].splitlines() if " = " in line]
+    assert {"stiffness", "position", "axis", "limit"} <= set(keys)
+    assert "body" not in keys
 
 
 def test_a_capture_that_tells_of_a_hinge_hands_nothing_over() -> None:
