@@ -17,6 +17,8 @@ PARALLEL = 1e-9
 """Sine of the angle of an edge to a face that never meets it."""
 DEEPER = 2e-7
 """Metres below what ways lie within another body, from where on an edge is in that."""
+PAST = 1e-5
+"""Metres past the end of an edge at which it is looked whether another body goes on there."""
 APART = 1e-6
 """Metres of an edge from both ends, no less than that, where they are divided by."""
 
@@ -53,9 +55,32 @@ def make_hide(hulls: Any) -> Any:
         return (first * far + last * near) / max(near + far, APART)
 
     @kernel
+    def goes_on(p, edge, foot, tau):
+        """Whether a place along an edge lies in another body in `wrap_others`, or on one.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        rows, planes = bodies_of(p), planes_of(p)
+        for n in range(p.wrap_others_near):
+            body = p.wrap_others[n]
+            if body == p.wrap_body:
+                continue
+            first = int(rows[body, FIRST])
+            within = True
+            for k in range(first, first + int(rows[body, NUMBER])):
+                above = dot(planes[k, 0:3], foot) + tau * dot(planes[k, 0:3], edge) - planes[k, 3] + p.wrap_inset
+                if above > DEEPER:
+                    within = False
+                    break
+            if within:
+                return True
+        return False
+
+    @kernel
     def hide(p, j):
         """Leave out of an edge what lies within the other bodies in `wrap_others`, or in one of their faces. Of the
-        parts before and behind one the way goes over that which is nearer to it.
+        parts before and behind one the way goes over that which is nearer to it. Over an end behind which another body
+        goes on the way does not slide.
 
         Checked  tests/net_capture/test_visits.py
         """
@@ -92,5 +117,9 @@ def make_hide(hulls: Any) -> Any:
                 else:
                     span[LOW] = leaves
                     pair[2] = -1
+            for end in range(2):
+                tau = span[LOW] - PAST if end == 0 else span[HIGH] + PAST
+                if pair[2 + end] >= 0 and abs(tau) < math.inf and goes_on(p, edge, foot, tau):
+                    pair[2 + end] = -1
 
     return hide

@@ -36,6 +36,10 @@ SAGITTA, FLAT = 0.2, 0.009
 """Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
 STAYS = 1.5e-3
 """Metres by which a face moved out may stand out of what covers it, less than what ways lie below the surface."""
+THICK = 0.25
+"""Share of its radius from which on the wall of a shell is so thick that no slabs are cut."""
+ROUNDED, ON = 1e-9, 1e-7
+"""By which angles and places may seem to differ [rad], and corners and faces lie apart [m]."""
 NEARLY = 0.02
 """Share of the way to its middle, from its corners and from between them, at which a face is looked at."""
 
@@ -69,9 +73,8 @@ def _box(half: Array) -> Array:
     return faces
 
 
-def _slabs(radius: float, length: float, thickness: float, angle: float) -> list[tuple[Array, Array]]:
+def _slabs(radius: float, length: float, thickness: float, angle: float, count: int) -> list[tuple[Array, Array]]:
     """Faces of every slab, and a point inside it, in the shell's axes: outer, inner, sides, ends."""
-    count = slabs(radius, thickness, angle)
     half = 0.5 * angle / count
     found = []
     for number in range(count):
@@ -89,15 +92,64 @@ def _slabs(radius: float, length: float, thickness: float, angle: float) -> list
     return found
 
 
-def bodies_of(row: Array) -> list[Body]:
-    """The bodies of a piece, from its row of `union.WORDS`."""
+def _halves(radius: float, length: float, thickness: float, angle: float, count: int) -> list[tuple[Array, Array]]:
+    """The same of a shell that is nearly solid: what of it lies beyond each tangent of the inside, up to all chords of
+    the outside, and between both ends of the angle. So it has no joints but at the tangents; ends come last.
+
+    count      of the chords
+    """
+    inner, half = radius - thickness, 0.5 * angle / count
+    gap = min(SAGITTA * thickness, FLAT * radius)
+    tangents = max(1 if angle <= math.pi else 2, math.ceil(0.5 * angle / math.acos(inner / (inner + gap)) - ROUNDED))
+    turns = angle * ((np.arange(count) + 0.5) / count - 0.5)
+    chords = np.zeros((count, 4))
+    chords[:, 0], chords[:, 1], chords[:, 3] = np.cos(turns), np.sin(turns), radius * math.cos(half)
+    ends = np.array([[0.0, 0.0, 1.0, 0.5 * length], [0.0, 0.0, -1.0, 0.5 * length]])
+    found = []
+    for number in range(tangents):
+        middle = angle * ((number + 0.5) / tangents - 0.5)
+        out = np.array([math.cos(middle), math.sin(middle), 0.0])
+        cuts = [np.array([*-out, -inner])]
+        for sign in (-1.0, 1.0):
+            edge = 0.5 * sign * angle
+            side = np.array([-sign * math.sin(edge), sign * math.cos(edge), 0.0, 0.0])
+            reaches = sign * middle + 0.5 * math.pi > 0.5 * angle + ROUNDED
+            if angle < 2.0 * math.pi - ROUNDED and reaches and min(np.abs(side - cut).max() for cut in cuts) > ROUNDED:
+                cuts.append(side)
+        faces = np.vstack([chords, *cuts, ends])
+        point = 0.5 * (inner + radius * math.cos(half)) * out
+        corners = corners_of(faces, point)
+        bounds = [(np.abs(corners @ face[:3] - face[3]) < ON).sum() > 2 for face in faces]
+        found.append((faces[bounds], point))
+    return found
+
+
+def chords(rows: Array) -> list[int]:
+    """Into how many chords the outside of each piece is cut that is a shell. Shells of one radius about one axis that
+    begin and end at the same angles have as many, so that their faces lie in one plane.
+
+    rows       pieces, see `union.WORDS`
+    """
+
+    def alike(one: Array, other: Array) -> bool:
+        along, away = one[8:17].reshape(3, 3)[:, 2], other[5:8] - one[5:8]
+        of_one = np.concatenate([one[[0, 1, 4]], one[8:17], away - (away @ along) * along])
+        return bool(np.abs(of_one - np.concatenate([other[[0, 1, 4]], other[8:17], np.zeros(3)])).max() < ROUNDED)
+
+    own = [slabs(*(float(row[i]) for i in (1, 3, 4))) if int(row[0]) == of.SHELL else 0 for row in rows]
+    return [max(number for number, other in zip(own, rows, strict=True) if other is row or alike(row, other)) for row in rows]
+
+
+def bodies_of(row: Array, count: int) -> list[Body]:
+    """The bodies of a piece, from its row of `union.WORDS`, and how many chords it is cut into, see `chords`."""
     kind, place, turn = int(row[0]), row[5:8], row[8:17].reshape(3, 3)
     room, none = np.zeros((sphere.FACES, 4)), np.zeros(3)
     every: list[int] = list(range(6))
     if kind == of.BOX:
         own = [(_box(row[1:4]), none)]
     elif kind == of.SHELL:
-        own = _slabs(*(float(x) for x in row[1:5]))
+        cut = _halves if row[3] > 0.0 * THICK * row[1] else _slabs
+        own = cut(*(float(x) for x in row[1:5]), count)
     elif kind == of.SPHERE:
         count = formula(sphere.faces)(SimpleNamespace(target_radius=row[1]), room)
         own, every = [(room[:count], none)], []
@@ -111,7 +163,10 @@ def bodies_of(row: Array) -> list[Body]:
         moved = np.empty_like(faces)
         moved[:, :3] = faces[:, :3] @ turn.T
         moved[:, 3] = faces[:, 3] + moved[:, :3] @ place
-        plane = every[4:] if kind == of.SHELL else every
+        plane = every
+        if kind == of.SHELL:
+            every = [n for n in range(len(faces)) if row[3] <= 0.0 or abs(faces[n, 3]) < ROUNDED or faces[n, 2] != 0.0]
+            plane = range(len(faces) - 2, len(faces))
         found.append(Body(moved, place + turn @ inside, np.array(every, dtype=np.int64), plane))
     return found
 
@@ -124,18 +179,61 @@ def corners_of(faces: Array, inside: Array) -> Array:
     return np.asarray(found[np.isfinite(found).all(axis=1)])
 
 
-def _moved_out(body: Body, distance: Callable[[Array], float]) -> tuple[Array, Array]:
-    """Faces of a body, those that are covered moved out, and which are; `distance(point)` from the union [m]."""
+def _on(body: Body, faces: Array, face: int) -> Array:
+    """Corners of a body on one of its faces [m] (n, 3), as these planes are."""
+    corners = corners_of(faces, body.inside)
+    return np.asarray(corners[np.abs(corners @ faces[face, :3] - faces[face, 3]) < ON])
+
+
+def _within(body: Body, faces: Array, face: int, distance: Callable[[Array], float], stands: float) -> bool:
+    """Whether a face of a body lies in the union, or stands out by so much at most [m]."""
+    on = _on(body, faces, face)
+    between = 0.5 * (on[:, None] + on[None]).reshape(-1, 3)
+    return not any(distance(point) > stands for point in between + NEARLY * (on.mean(axis=0) - between))
+
+
+def _goes_on(body: Body, faces: Array, face: int, others: Array, distance: Callable[[Array], float]) -> Array:
+    """Faces of a body, one of which is moved out through the union to where another body ends that has a face in one
+    plane with one beside it: so there is no joint.
+
+    others     faces of all bodies
+    """
+
+    def of_others(normal: Array) -> Array:
+        return np.asarray(others[others[:, :3] @ normal > 1.0 - ROUNDED, 3])
+
+    on = _on(body, faces, face)
+    beside = [k for k in range(len(faces)) if k != face and (np.abs(on @ faces[k, :3] - faces[k, 3]) < ON).sum() > 1]
+    if not any((np.abs(of_others(faces[k, :3]) - faces[k, 3]) < ON).sum() > 1 for k in beside):
+        return faces
+    heights = of_others(faces[face, :3])
+    for height in np.unique(heights[heights > faces[face, 3] + ON]):
+        moved = faces.copy()
+        for share in np.linspace(0.0, 1.0, 9)[1:]:
+            moved[face, 3] = faces[face, 3] + share * (height - faces[face, 3])
+            if not _within(body, moved, face, distance, ON):
+                return faces
+        faces = moved
+    return faces
+
+
+def _moved_out(body: Body, others: Array, distance: Callable[[Array], float]) -> tuple[Array, Array]:
+    """Faces of a body, those that are covered moved out, and which are; `distance(point)` from the union [m].
+
+    others     faces of all bodies
+    """
     faces, covered = body.faces.copy(), np.zeros(len(body.faces))
     for face in body.movable:
-        moved = faces.copy()
-        moved[face, 3] += 2.0 * INSET if face in body.plane else INSET
-        corners = corners_of(moved, body.inside)
-        on = corners[np.abs(corners @ moved[face, :3] - moved[face, 3]) < 1e-7]
-        between = 0.5 * (on[:, None] + on[None]).reshape(-1, 3)
-        within = between + NEARLY * (on.mean(axis=0) - between)
-        if not any(distance(point) > STAYS for point in within):
-            faces, covered[face] = moved, 1.0
+        for _ in range(2):
+            moved = faces.copy()
+            moved[face, 3] += 2.0 * INSET if face in body.plane else INSET
+            if not _within(body, moved, face, distance, STAYS):
+                break
+            farther = _goes_on(body, faces, face, others, distance)
+            if farther is faces:
+                faces, covered[face] = moved, 1.0
+                break
+            faces = farther
     return faces, covered
 
 
@@ -148,8 +246,10 @@ def bodies_and_planes(rows: Array, distance: Callable[[Array], float]) -> tuple[
     """
     bodies: list[list[float]] = []
     planes: list[Array] = []
-    for body in (body for row in rows for body in bodies_of(row)):
-        faces, covered = _moved_out(body, distance)
+    every = [body for row, count in zip(rows, chords(rows), strict=True) for body in bodies_of(row, count)]
+    others = np.vstack([body.faces for body in every])
+    for body in every:
+        faces, covered = _moved_out(body, others, distance)
         corners = corners_of(faces, body.inside)
         middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         radius = np.linalg.norm(corners - middle, axis=1).max()
