@@ -18,7 +18,8 @@ PARALLEL = 1e-9
 DEEPER = 2e-7
 """Metres below what ways lie within another body, from where on an edge is in that."""
 PAST = 1e-5
-"""Metres past the end of an edge at which it is looked whether another body goes on there."""
+"""Metres past the end of an edge at which it is looked whether another body goes on there; no shorter part of one is
+left."""
 APART = 1e-6
 """Metres of an edge from both ends, no less than that, where they are divided by."""
 
@@ -111,8 +112,8 @@ def make_hide(hulls: Any) -> Any:
                 if enters >= leaves or flush > 1:
                     continue
                 before, behind = enters - span[LOW], span[HIGH] - leaves
-                if behind <= 0.0 or (before > 0.0 and middle < 0.5 * (enters + leaves)):
-                    span[HIGH] = enters if before > 0.0 else -math.inf
+                if behind <= PAST or (before > PAST and middle < 0.5 * (enters + leaves)):
+                    span[HIGH] = enters if before > PAST else -math.inf
                     pair[3] = -1
                 else:
                     span[LOW] = leaves
