@@ -35,6 +35,7 @@ class Chain(NamedTuple):
     lift(p, edges)         leave out faces from which the way has lifted off, one after another
     lengthen(p, edges)     put faces where an end does not see the outermost one
     uncover(p, edges)      leave out faces that lie in another body
+    bare(p, edges)         leave out outermost faces behind edges that lie in other bodies
     """
 
     sees: Any
@@ -42,6 +43,7 @@ class Chain(NamedTuple):
     lift: Any
     lengthen: Any
     uncover: Any
+    bare: Any
 
 
 def make_chain(lay: Any, several: bool) -> Chain:
@@ -131,6 +133,35 @@ def make_chain(lay: Any, several: bool) -> Chain:
         return covered
 
     @kernel
+    def hidden(p, one, other):
+        """Whether the edge between two faces lies in other bodies, so that no way comes over it.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        gone = False
+        if several:
+            gone = not lay(p, 0, one, other) and (p.wrap_pairs[0, 2] < 0 or p.wrap_pairs[0, 3] < 0)
+        return gone
+
+    @kernel
+    def bare(p, edges):
+        """Leave out the first face and the last while the edge that they have with the next lies in other bodies. Works
+        on `wrap_chain`; how many edges are left.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        chain = p.wrap_chain
+        first = 0
+        while first < edges and hidden(p, chain[first], chain[first + 1]):
+            first += 1
+        last = edges
+        while last > first and hidden(p, chain[last - 1], chain[last]):
+            last -= 1
+        for j in range(first, last + 1):
+            chain[j - first] = chain[j]
+        return last - first
+
+    @kernel
     def lengthen(p, edges):
         """Put faces before the first that one end does not see, and after the last that the other does not. Works on
         `wrap_chain`; how many edges there are then, 0 where no such face joins. Where it is wound over more edges than
@@ -164,7 +195,7 @@ def make_chain(lay: Any, several: bool) -> Chain:
                 face = come_in(p, end, point)
                 if face < 0:
                     return 0
-                if covers(p, face):
+                if covers(p, face) or hidden(p, face, chain[0 if way == 0 else edges]):
                     break
                 edges += 1
                 if way == 0:
@@ -188,4 +219,4 @@ def make_chain(lay: Any, several: bool) -> Chain:
                 p.wrap_chain[left] = p.wrap_chain[j]
         return left
 
-    return Chain(sees, trim, lift, lengthen, uncover)
+    return Chain(sees, trim, lift, lengthen, uncover, bare)

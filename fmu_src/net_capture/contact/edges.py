@@ -107,7 +107,8 @@ def make_way(hulls: Any = None) -> Any:
         return low <= high + TOGETHER and not beside
 
     chain = make_chain(lay, leans)
-    sees, trim, lift, lengthen, uncover = chain.sees, chain.trim, chain.lift, chain.lengthen, chain.uncover
+    sees, trim, lift, lengthen = chain.sees, chain.trim, chain.lift, chain.lengthen
+    uncover, bare = chain.uncover, chain.bare
 
     @kernel
     def shift(p, edges, j, by):
@@ -335,7 +336,7 @@ def make_way(hulls: Any = None) -> Any:
                 return 0
             edges = trim(p, over(p, first, last, middle))
             if leans:
-                edges = uncover(p, edges)
+                edges = bare(p, uncover(p, edges))
                 if not lay_all(p, edges):
                     return 0
             else:
