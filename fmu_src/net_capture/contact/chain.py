@@ -46,8 +46,8 @@ class Chain(NamedTuple):
     bare: Any
 
 
-def make_chain(lay: Any, several: bool) -> Chain:
-    """Kernels; `lay(p, j, one, other)` of `edges` puts an edge between two faces.
+def make_chain(lay: Any, several: bool, elsewhere: Any) -> Chain:
+    """Kernels; `lay(p, j, one, other)` of `edges` puts an edge between two faces; `elsewhere` is that of `hidden`.
 
     several    whether an end may be a bend round another body, in the plane of a face
     """
@@ -122,14 +122,22 @@ def make_chain(lay: Any, several: bool) -> Chain:
         return found
 
     @kernel
-    def covers(p, face):
-        """Whether a face lies in another body, so that no way comes over it: the other is in the way then.
+    def covers(p, face, end, point):
+        """Whether a face lies in another body, or does where the straight line from an end of the thread to a point
+        comes in through it, so that no way comes over it there: the other is in the way then.
 
-        Checked  tests/net_capture/test_union_wrapping.py
+        Checked  tests/net_capture/test_union_wrapping.py, test_shell_wrapping.py
         """
         covered = False
         if several:
             covered = p.wrap_covered[face] > 0
+            if not covered:
+                plane, place = p.wrap_planes[face], p.wrap_moving
+                above = dot(plane[0:3], end) - plane[3] + p.wrap_inset
+                there = dot(plane[0:3], point) - plane[3] + p.wrap_inset
+                for i in range(3):
+                    place[i] = end[i] + above / (above - there) * (point[i] - end[i])
+                covered = elsewhere(p, place, face)
         return covered
 
     @kernel
@@ -195,7 +203,7 @@ def make_chain(lay: Any, several: bool) -> Chain:
                 face = come_in(p, end, point)
                 if face < 0:
                     return 0
-                if covers(p, face) or hidden(p, face, chain[0 if way == 0 else edges]):
+                if covers(p, face, end, point) or hidden(p, face, chain[0 if way == 0 else edges]):
                     break
                 edges += 1
                 if way == 0:

@@ -20,6 +20,8 @@ DEEPER = 2e-7
 PAST = 1e-5
 """Metres past the end of an edge at which it is looked whether another body goes on there; no shorter part of one is
 left."""
+ALIKE = 1e-9
+"""By which the cosine of the angle between two faces in one plane may be less than 1."""
 APART = 1e-6
 """Metres of an edge from both ends, no less than that, where they are divided by."""
 
@@ -124,3 +126,39 @@ def make_hide(hulls: Any) -> Any:
                     pair[2 + end] = -1
 
     return hide
+
+
+def make_elsewhere(hulls: Any) -> Any:
+    """Kernel `elsewhere(p, point, face)`: whether a point of a face of the body in `wrap_planes` lies in another body
+    of those listed in `wrap_others`, or on one, but for one with a face in the same plane there. Never for None.
+
+    Checked  tests/net_capture/test_shell_wrapping.py
+    """
+    several = hulls is not None
+    bodies_of, planes_of = (hulls.bodies, hulls.planes) if several else (None, None)
+
+    @kernel
+    def elsewhere(p, point, face):
+        """Whether a point of a face lies in another body.
+
+        Checked  tests/net_capture/test_shell_wrapping.py
+        """
+        if several:
+            rows, planes = bodies_of(p), planes_of(p)
+            for n in range(p.wrap_others_near):
+                body = p.wrap_others[n]
+                if body == p.wrap_body:
+                    continue
+                first = int(rows[body, FIRST])
+                within = True
+                for k in range(first, first + int(rows[body, NUMBER])):
+                    above = dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset
+                    same = above > -PAST and dot(planes[k, 0:3], p.wrap_planes[face, 0:3]) > 1.0 - ALIKE
+                    if above > DEEPER or same:
+                        within = False
+                        break
+                if within:
+                    return True
+        return False
+
+    return elsewhere
