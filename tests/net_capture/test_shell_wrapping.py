@@ -1,4 +1,4 @@
-"""The way of a thread over the rims of an open shell and over the joint with its cap, against the shortest of a graph."""
+"""The way of a thread over the rims of a shell and over the joint with its cap, against the shortest of a graph."""
 
 import itertools
 import math
@@ -133,6 +133,45 @@ def shortest(bodies, a, b):
         if inside(bodies, places_of[n : n + 1], places_of[n + 2 : n + 3], CUTS)[0] < 1e-4 and len(chain) > 1:
             best = min(best, least(chain[:n] + chain[n + 1 :]))
     return best
+
+
+SHELLS = {
+    "cap": CAP | {"position": [0.0, 0.0, 0.0]},
+    "thin": WALL | {"thickness": 0.01, "angle": 1.5},
+    "thick": WALL | {"thickness": 0.5, "angle": 4.0},
+    "tube": WALL | {"angle": 2.0 * math.pi},
+    "nearly solid": WALL | {"thickness": 1.29, "angle": 2.5},
+}
+
+
+@pytest.mark.parametrize("shell", SHELLS.values(), ids=SHELLS)
+def test_bodies_of_a_shell_lie_in_it_and_fill_it(shell):
+    """But for what a chord and a tangent lie within it."""
+    row = laid(shell)["target.pieces"]
+    numbers, draw = {union.PIECES: row}, np.random.default_rng(4)
+    planes = union.planes(numbers)
+    bodies = [planes[int(first) : int(first + count)] for first, count, *_ in union.bodies(numbers)]
+
+    def body_axes(points):
+        return row[0, 5:8] + points @ row[0, 8:17].reshape(3, 3).T
+
+    assert not np.vstack(bodies)[:, 4].any(), "none is covered"
+    radius, length, thickness, angle = (shell[of] for of in ("radius", "length", "thickness", "angle"))
+    within = min(0.2 * thickness, 0.009 * radius)
+    away = np.sqrt(draw.uniform((radius - thickness) ** 2, radius**2, 20000))
+    turn, height = draw.uniform(-0.5 * angle, 0.5 * angle, 20000), draw.uniform(-0.5 * length, 0.5 * length, 20000)
+    points = np.column_stack([away * np.cos(turn), away * np.sin(turn), height])
+    held = np.zeros(len(points), bool)
+    for faces in bodies:
+        held |= (body_axes(points) @ faces[:, :3].T <= faces[:, 3] + 1e-9).all(axis=1)
+    deep = (away < radius - within) & (away > radius - thickness + within)
+    assert held[deep].all()
+    around = np.column_stack([draw.uniform(-1.1, 1.1, (20000, 2)) * radius, draw.uniform(-0.6, 0.6, 20000) * length])
+    far, beside = np.hypot(around[:, 0], around[:, 1]), np.abs(np.arctan2(around[:, 1], around[:, 0])) > 0.5 * angle
+    out = (far > radius) | (far < radius - thickness) | beside | (np.abs(around[:, 2]) > 0.5 * length)
+    for faces in bodies:
+        inner = (body_axes(around) @ faces[:, :3].T <= faces[:, 3] - 1e-9).all(axis=1)
+        assert not (inner & out).any()
 
 
 def turned(angle, away, height):

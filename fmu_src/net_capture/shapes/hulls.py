@@ -1,13 +1,15 @@
 """Convex bodies of which a union is made, for threads that bend round it: every piece is one, and a shell is several.
 
 A body lies within its piece. A box is itself, round pieces are polyhedra as round targets are (`cylinder.faces_around`,
-`sphere.faces`), and the wall of a shell is cut into slabs along its axis, each of six plane faces: the outer one a
-chord of the outside, the inner one a tangent of the inside.
+`sphere.faces`). A shell is what lies between chords of its outside and tangents of its inside, and each of its bodies
+what of that lies beyond one of these tangents: they overlap, and its outside is one surface without joints. Shells that
+stand flush on one another have the same chords.
 
 Ways lie a little below the faces of a body. Where one body stands on another, a gap would be left between the two, into
-which a thread could slip: a face that is covered by other bodies is moved out into them by as much as closes it.
+which a thread could slip: a face that is covered by other bodies is moved out into them by as much as closes it, and
+where both have faces in one plane beside it, to where the other ends.
 
-Checked  tests/net_capture/test_union_wrapping.py
+Checked  tests/net_capture/test_union_wrapping.py, test_shell_wrapping.py
 """
 
 from __future__ import annotations
@@ -33,11 +35,9 @@ INSET = 2e-3
 """Metres that a way lies below the surface: so one between two nodes of a face, which lie on it or a little below,
 does not touch it, and no bend comes nearer to a node. An edge is as one rounded to 7 mm."""
 SAGITTA, FLAT = 0.2, 0.009
-"""Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
+"""Of a shell's thickness, and of its radius, by which a chord or a tangent may lie within it at most."""
 STAYS = 1.5e-3
 """Metres by which a face moved out may stand out of what covers it, less than what ways lie below the surface."""
-THICK = 0.25
-"""Share of its radius from which on the wall of a shell is so thick that no slabs are cut."""
 ROUNDED, ON = 1e-9, 1e-7
 """By which angles and places may seem to differ [rad], and corners and faces lie apart [m]."""
 NEARLY = 0.02
@@ -54,8 +54,8 @@ class Body(NamedTuple):
     plane: Collection[int]
 
 
-def slabs(radius: float, thickness: float, angle: float) -> int:
-    """How many slabs a shell is cut into."""
+def chords_of(radius: float, thickness: float, angle: float) -> int:
+    """How many chords the outside of a shell has."""
     sagitta = min(SAGITTA * thickness, FLAT * radius)
     return max(2, math.ceil(0.5 * angle / math.acos(1.0 - sagitta / radius)))
 
@@ -73,28 +73,11 @@ def _box(half: Array) -> Array:
     return faces
 
 
-def _slabs(radius: float, length: float, thickness: float, angle: float, count: int) -> list[tuple[Array, Array]]:
-    """Faces of every slab, and a point inside it, in the shell's axes: outer, inner, sides, ends."""
-    half = 0.5 * angle / count
-    found = []
-    for number in range(count):
-        middle = angle * ((number + 0.5) / count - 0.5)
-        out = np.array([math.cos(middle), math.sin(middle), 0.0])
-        faces = np.zeros((6, 4))
-        faces[0] = *out, radius * math.cos(half)
-        faces[1] = *-out, thickness - radius
-        for side, sign in ((2, -1.0), (3, 1.0)):
-            edge = middle + sign * half
-            faces[side, :2] = -sign * math.sin(edge), sign * math.cos(edge)
-        faces[4] = 0.0, 0.0, 1.0, 0.5 * length
-        faces[5] = 0.0, 0.0, -1.0, 0.5 * length
-        found.append((faces, (radius - 0.5 * thickness) * out))
-    return found
+def _segments(radius: float, length: float, thickness: float, angle: float, count: int) -> list[tuple[Array, Array]]:
+    """Faces of every body of a shell, and a point inside it, in the shell's axes: chords of the outside, a tangent of
+    the inside, ends of the angle, ends of the axis.
 
-
-def _halves(radius: float, length: float, thickness: float, angle: float, count: int) -> list[tuple[Array, Array]]:
-    """The same of a shell that is nearly solid: what of it lies beyond each tangent of the inside, up to all chords of
-    the outside, and between both ends of the angle. So it has no joints but at the tangents; ends come last.
+    Each is what of the shell lies beyond one tangent of the inside, so they overlap, and join at the tangents alone.
 
     count      of the chords
     """
@@ -125,7 +108,7 @@ def _halves(radius: float, length: float, thickness: float, angle: float, count:
 
 
 def chords(rows: Array) -> list[int]:
-    """Into how many chords the outside of each piece is cut that is a shell. Shells of one radius about one axis that
+    """How many chords the outside of each piece has that is a shell. Shells of one radius about one axis that
     begin and end at the same angles have as many, so that their faces lie in one plane.
 
     rows       pieces, see `union.WORDS`
@@ -136,20 +119,19 @@ def chords(rows: Array) -> list[int]:
         of_one = np.concatenate([one[[0, 1, 4]], one[8:17], away - (away @ along) * along])
         return bool(np.abs(of_one - np.concatenate([other[[0, 1, 4]], other[8:17], np.zeros(3)])).max() < ROUNDED)
 
-    own = [slabs(*(float(row[i]) for i in (1, 3, 4))) if int(row[0]) == of.SHELL else 0 for row in rows]
-    return [max(number for number, other in zip(own, rows, strict=True) if other is row or alike(row, other)) for row in rows]
+    own = [chords_of(*(float(row[i]) for i in (1, 3, 4))) if int(row[0]) == of.SHELL else 0 for row in rows]
+    return [max(number for number, other in zip(own, rows, strict=True) if alike(row, other)) for row in rows]
 
 
 def bodies_of(row: Array, count: int) -> list[Body]:
-    """The bodies of a piece, from its row of `union.WORDS`, and how many chords it is cut into, see `chords`."""
+    """The bodies of a piece, from its row of `union.WORDS`, and how many chords it has, see `chords`."""
     kind, place, turn = int(row[0]), row[5:8], row[8:17].reshape(3, 3)
     room, none = np.zeros((sphere.FACES, 4)), np.zeros(3)
     every: list[int] = list(range(6))
     if kind == of.BOX:
         own = [(_box(row[1:4]), none)]
     elif kind == of.SHELL:
-        cut = _halves if row[3] > 0.0 * THICK * row[1] else _slabs
-        own = cut(*(float(x) for x in row[1:5]), count)
+        own = _segments(*(float(x) for x in row[1:5]), count)
     elif kind == of.SPHERE:
         count = formula(sphere.faces)(SimpleNamespace(target_radius=row[1]), room)
         own, every = [(room[:count], none)], []
@@ -165,8 +147,8 @@ def bodies_of(row: Array, count: int) -> list[Body]:
         moved[:, 3] = faces[:, 3] + moved[:, :3] @ place
         plane = every
         if kind == of.SHELL:
-            every = [n for n in range(len(faces)) if row[3] <= 0.0 or abs(faces[n, 3]) < ROUNDED or faces[n, 2] != 0.0]
-            plane = range(len(faces) - 2, len(faces))
+            every = [n for n in range(len(faces)) if faces[n, 2] != 0.0 or abs(faces[n, 3]) < ROUNDED]
+            plane = every[-2:]
         found.append(Body(moved, place + turn @ inside, np.array(every, dtype=np.int64), plane))
     return found
 
