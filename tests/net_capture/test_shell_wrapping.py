@@ -8,11 +8,14 @@ import pytest
 from scipy.optimize import minimize
 from scipy.sparse.csgraph import dijkstra
 
+from fmu_src.net_capture import near
 from fmu_src.net_capture.planes import P
 from fmu_src.net_capture.shapes import pieces, union
 from fmu_src.net_capture.shapes.hulls import INSET
+from fmu_src.net_capture.visit_list import make_visit_list
 from tests.net_capture.test_union_wrapping import laid
 from tests.net_capture.test_visits import BASE, Seeker
+from tests.plain import plainly
 
 RADIUS, THICK, LONG = 1.3, 0.05, 4.5
 WALL = {"shape": pieces.SHELL, "radius": RADIUS, "length": LONG, "thickness": THICK, "angle": math.pi, "mass": 180.0}
@@ -227,3 +230,21 @@ def test_a_thread_drawn_over_a_rim_takes_the_shortest_way(ends):
         assert seek.lost == (0, 0)
         assert seek.p.visits_passed == 0
         assert ways[-1] == pytest.approx(shortest(bodies, bends[0], bends[-1]), abs=1e-9)
+
+
+def test_an_end_that_comes_up_past_the_open_end_meets_the_body_that_is_there():
+    """The thread lies over an outer edge of one body, beyond that one's inner edge: another's is in its way."""
+    seek, bodies, listed = Drawn(FAIRING), bodies_and_faces(), make_visit_list()
+    p, a = seek.p, turned(-0.2985, 1.3367, LOW + 0.0966)
+    p.visits, p.visits_passed, p.visit_body[0], p.visit_edges[0] = 1, 0, 5, 1
+    p.visit_chain[0, :2] = 0, 5
+    p.visit_ends[0, :3] = p.visit_ends[0, 3:] = seek.place + seek.turn @ turned(-0.454, 1.2891, LOW + INSET)
+    plainly(listed.keep.py_func)(p, seek.words, near.KEPT)
+    seek.words[near.STATE], seek.words[near.WAY] = near.BENT, round(0.5 / near.FINE)
+    ends = [(a, turned(-0.6576, 1.1915, LOW + INSET + up)) for up in (-1e-4, 0.03)]
+    ways = seek.drawn(ends, 60, 0.02)
+    bends = seek.bends()
+    assert seek.lost == (0, 0)
+    assert len(bends) == 4
+    assert np.abs(np.diff(ways)).max() < 0.03 / 60
+    assert ways[-1] == pytest.approx(shortest(bodies, bends[0], bends[-1]), abs=1e-9)

@@ -131,7 +131,8 @@ def bodies_of(row: Array, count: int) -> list[Body]:
     if kind == of.BOX:
         own = [(_box(row[1:4]), none)]
     elif kind == of.SHELL:
-        own = _segments(*(float(x) for x in row[1:5]), count)
+        radius, length, thickness, angle = (float(x) for x in row[1:5])
+        own = _segments(radius, length, thickness, angle, count)
     elif kind == of.SPHERE:
         count = formula(sphere.faces)(SimpleNamespace(target_radius=row[1]), room)
         own, every = [(room[:count], none)], []
