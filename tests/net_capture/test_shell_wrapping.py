@@ -241,7 +241,7 @@ def test_an_end_that_comes_up_past_the_open_end_meets_the_body_that_is_there():
     p.visit_ends[0, :3] = p.visit_ends[0, 3:] = seek.place + seek.turn @ turned(-0.454, 1.2891, LOW + INSET)
     plainly(listed.keep.py_func)(p, seek.words, near.KEPT)
     seek.words[near.STATE], seek.words[near.WAY] = near.BENT, round(0.5 / near.FINE)
-    ends = [(a, turned(-0.6576, 1.1915, LOW + INSET + up)) for up in (-1e-4, 0.03)]
+    ends = [(a, turned(-0.6576, 1.1915, LOW + INSET + up)) for up in (-1e-4, -1e-6, 3e-6, 0.03)]
     ways = seek.drawn(ends, 60, 0.02)
     bends = seek.bends()
     assert seek.lost == (0, 0)

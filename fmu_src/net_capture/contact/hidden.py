@@ -154,7 +154,7 @@ def make_elsewhere(hulls: Any) -> Any:
                 for k in range(first, first + int(rows[body, NUMBER])):
                     above = dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset
                     same = above > -PAST and dot(planes[k, 0:3], p.wrap_planes[face, 0:3]) > 1.0 - ALIKE
-                    if above > DEEPER or same:
+                    if above > PAST or same:
                         within = False
                         break
                 if within:
