@@ -43,6 +43,8 @@ MARGIN = 0.01
 """Metres that a way may be longer than it was to be, for bodies that are near."""
 GRAZES = 2e-6
 """Metres by which a piece of the way may lie deeper in a body than a way round it."""
+THROUGH = 1e-4
+"""Metres by which it lies deeper where it has gone through: one that grazes is asked again a substep on."""
 LONGER = 1e-6
 """Metres by which a way that goes over to another body may be longer."""
 
@@ -125,9 +127,11 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return relax(p)
 
     @kernel
-    def crosses(p, body, piece, edges):
+    def crosses(p, body, piece, edges, deeper):
         """Whether a piece of the way goes through a body that is visited at neither of its ends; else `wrap_near` gets
         no longer than how far it is from that, at least.
+
+        deeper    than a way round it                       [m]
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
@@ -138,7 +142,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                 return False
         ends(p, piece, edges)
         take(p, body)
-        p.wrap_grazes = GRAZES
+        p.wrap_grazes = deeper
         first, _, _ = cut(p)
         p.wrap_grazes = 0.0
         if first < 0:
@@ -146,13 +150,13 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return first >= 0
 
     @kernel
-    def crossed(p, body, edges):
+    def crossed(p, body, edges, deeper):
         """Piece of the way that goes through a body, -1: none does.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
         for piece in range(edges + 1):
-            if crosses(p, body, piece, edges):
+            if crosses(p, body, piece, edges, deeper):
                 return piece
         return -1
 
@@ -172,7 +176,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             for s in range(p.visits_passed):
                 if p.visit_passed[s] == body:
                     through = s
-            hit = crossed(p, body, edges)
+            hit = crossed(p, body, edges, GRAZES)
             if through < 0 and hit >= 0:
                 return hit, n
             if through >= 0 and hit < 0:
@@ -251,9 +255,10 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                 p.wrap_others[left] = body
         for n in range(left, p.wrap_others_near):
             body = p.wrap_others[n]
-            if crossed(p, body, edges) >= 0:
-                pass_through(p, body)
-                p.wrap_passed += 1
+            if crossed(p, body, edges, GRAZES) >= 0:
+                if crossed(p, body, edges, THROUGH) >= 0:
+                    pass_through(p, body)
+                    p.wrap_passed += 1
                 p.wrap_near = 0.0
         return edges
 
@@ -272,7 +277,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         whole = found > 0 and length_of(p, found) <= way + LONGER
         if whole:
             for piece in range(found + 1):
-                whole = whole and not crosses(p, own, piece, found)
+                whole = whole and not crosses(p, own, piece, found, GRAZES)
         if not whole:
             recall(p, words, place)
             found = relax(p)

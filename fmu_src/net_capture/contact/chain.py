@@ -137,7 +137,7 @@ def make_chain(lay: Any, several: bool, elsewhere: Any) -> Chain:
                 there = dot(plane[0:3], point) - plane[3] + p.wrap_inset
                 for i in range(3):
                     place[i] = end[i] + above / (above - there) * (point[i] - end[i])
-                covered = elsewhere(p, place, face)
+                covered = elsewhere(p, end, place, face)
         return covered
 
     @kernel

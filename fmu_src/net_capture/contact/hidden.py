@@ -129,8 +129,9 @@ def make_hide(hulls: Any) -> Any:
 
 
 def make_elsewhere(hulls: Any) -> Any:
-    """Kernel `elsewhere(p, point, face)`: whether a point of a face of the body in `wrap_planes` lies in another body
-    of those listed in `wrap_others`, or on one, but for one with a face in the same plane there. Never for None.
+    """Kernel `elsewhere(p, end, point, face)`: whether a point of a face of the body in `wrap_planes` lies in another
+    body of those listed in `wrap_others`, or on one, but for one with a face in the same plane there, and one on which
+    the end of the way lies from which it comes. Never for None.
 
     Checked  tests/net_capture/test_shell_wrapping.py
     """
@@ -138,7 +139,7 @@ def make_elsewhere(hulls: Any) -> Any:
     bodies_of, planes_of = (hulls.bodies, hulls.planes) if several else (None, None)
 
     @kernel
-    def elsewhere(p, point, face):
+    def elsewhere(p, end, point, face):
         """Whether a point of a face lies in another body.
 
         Checked  tests/net_capture/test_shell_wrapping.py
@@ -150,14 +151,15 @@ def make_elsewhere(hulls: Any) -> Any:
                 if body == p.wrap_body:
                     continue
                 first = int(rows[body, FIRST])
-                within = True
+                within, apart = True, False
                 for k in range(first, first + int(rows[body, NUMBER])):
                     above = dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset
+                    apart = apart or dot(planes[k, 0:3], end) - planes[k, 3] + p.wrap_inset > PAST
                     same = above > -PAST and dot(planes[k, 0:3], p.wrap_planes[face, 0:3]) > 1.0 - ALIKE
                     if above > PAST or same:
                         within = False
                         break
-                if within:
+                if within and apart:
                     return True
         return False
 
