@@ -212,7 +212,6 @@ DRAWN = {
     "round the wall from chord to chord": (
         (turned(-0.25, 1.4, 2.15), turned(0.25, 1.4, 2.2)),
         (turned(-0.25, 1.305, 2.2), turned(0.3, 1.305, 2.1)),
-        (turned(-0.3, 1.25, 2.35), turned(0.2, 1.302, 2.1)),
     ),
 }
 
