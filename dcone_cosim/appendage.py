@@ -1,7 +1,8 @@
 """A hinged appendage that the removal holds fast: what the hand-off has to book of the motion that stops there.
 
-In the capture the target is one rigid body, the appendage in it. What it does besides, relative to the rest, the scene
-says of the removal; it is held fast as the tow begins, and its momentum becomes spin of the whole.
+Where the capture's target is one rigid body, the appendage in it, what it does besides, relative to the rest, the scene
+says of the removal. Where it swings in the capture, that is what the capture comes to: the target's spin has it in it.
+It is held fast as the tow begins, and its momentum becomes spin of the whole.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ APPENDAGE = (
     "appendage.rate",
 )
 """Parameters of a removal whose target has one."""
+ANGLE, SPEED = "hinge.angle", "hinge.rate"
+PRODUCTS = tuple(f"target.products[{i}]" for i in EACH)
+SWINGS = (ANGLE, SPEED, *PRODUCTS)
+"""Outputs of a capture whose target has one that swings."""
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,12 @@ from __future__ import annotations
 import math
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim.appendage import ANGLE, PRODUCTS, Hinged, asked, hinged
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.scene.data import PhaseScene
 from orbital import plain
@@ -38,9 +40,6 @@ CAPTURE_OUTPUTS = (
     "energy.kinetic",
 )
 """Outputs of the capture FMU that the hand-off reads."""
-
-SWINGS = "hinge.angle"
-"""Output of a capture whose target has a hinged appendage."""
 
 CAPTURE_PARAMETERS = (
     "chaser.mass",
@@ -76,7 +75,12 @@ class Body:
 class Handoff:
     """What is handed over: the bodies before, the joined body, where the line is made fast on it [m] (3,), how far the
     target reaches from its centre of mass [m], the removal's parameters, the target's attitude, a unit quaternion
-    from body to orbital axes (4,), and the mass of a line that the chaser has no more in it [kg]."""
+    from body to orbital axes (4,), and the mass of a line that the chaser has no more in it [kg].
+
+    appendage    that swings in the capture: parameters of a removal's, from the target's own centre of mass; else
+                 empty. The joined body's spin is then without the appendage's motion, which is to be held fast
+    swing        that motion, about the target's centre of mass, orbital axes
+    """
 
     chaser: Body
     target: Body
@@ -89,6 +93,16 @@ class Handoff:
     parameters: dict[str, float]
     attitude: Vector
     drawn: float = 0.0
+    appendage: Mapping[str, float] = field(default_factory=dict)
+    swing: Hinged | None = None
+
+    @property
+    def turning_energy(self) -> float:
+        """Kinetic energy of the target about its centre of mass before, that of its appendage in it [J]."""
+        if self.swing is None:
+            return spin_energy(self.target)
+        rigid = replace(self.target, spin=self.target.spin - self.swing.momentum)
+        return spin_energy(rigid) + self.swing.energy(rigid.spin, rigid.inertia)
 
 
 @dataclass(frozen=True)
@@ -165,31 +179,32 @@ def pair_parameters(chaser: Body, target: Body) -> dict[str, float]:
     return parameters
 
 
-def require_rigid(names: Container[str]) -> None:
+def require_rigid(names: Container[str], why: str = "what is handed over is one rigid target") -> None:
     """`HandoffError` where a capture, perhaps an FMU in a file, tells by its outputs that its target swings."""
-    if SWINGS in names:
-        raise HandoffError(
-            f"hand-off refused: the capture's target has an appendage that swings ({SWINGS}); "
-            "what is handed over is one rigid target"
-        )
+    if ANGLE in names:
+        raise HandoffError(f"hand-off refused: the capture's target has an appendage that swings ({ANGLE}); {why}")
 
 
-def prepare(capture: Values, frame_rate: float) -> Handoff:
+def prepare(capture: Values, frame_rate: float, appendage: Mapping[str, float] = MappingProxyType({})) -> Handoff:
     """Map the capture's outputs and parameters to the removal's parameters.
 
     capture       `CAPTURE_OUTPUTS` and `CAPTURE_PARAMETERS` by name, SI
     frame_rate    n, at which the orbital frame turns [rad/s]
+    appendage     that swings there, as it is now: a removal's parameters, from the target's centre of mass
     """
     turning = np.array([0.0, 0.0, frame_rate])
     chaser = Body(capture["chaser.mass"], _vector(capture, "chaser.position"), _vector(capture, "chaser.velocity"))
     attitude = np.array([capture[f"target.attitude[{i}]"] for i in range(1, 5)])
     turn = rotation_matrix(attitude)
+    whole = np.diag(_vector(capture, "target.inertia"))
+    for (i, j), name in zip(((0, 1), (0, 2), (1, 2)), PRODUCTS if appendage else (), strict=False):
+        whole[i, j] = whole[j, i] = capture[name]
     target = Body(
         capture["target.mass"],
         _vector(capture, "target.position"),
         _vector(capture, "target.velocity"),
         _vector(capture, "target.spin"),
-        turn @ np.diag(_vector(capture, "target.inertia")) @ turn.T,
+        turn @ whole @ turn.T,
     )
     i11, i22, i33, i12, i13, i23 = (capture[f"catch.inertia[{i}]"] for i in range(1, 7))
     inertia = np.array([[i11, i12, i13], [i12, i22, i23], [i13, i23, i33]])
@@ -205,9 +220,16 @@ def prepare(capture: Values, frame_rate: float) -> Handoff:
     inner = capture["energy.kinetic"] - 0.5 * catch.mass * float(catch.velocity @ catch.velocity)
     inner += float(turning @ seen_spin) + 0.5 * float(turning @ inertia @ turning)
     joint = join(target, catch, turning)
+    swing = hinged({**appendage, "target.mass": target.mass})
+    if swing is not None:
+        placed = asked(appendage.get, turn.T @ (target.position - joint.position))
+        moving = hinged({**placed, "target.mass": joint.mass})
+        assert moving is not None
+        swing, joint = swing.along(turn), replace(joint, spin=joint.spin - moving.along(turn).momentum)
     vertex = _vector(capture, "vertex.position")
     parameters = pair_parameters(chaser, joint)
-    return Handoff(chaser, target, catch, inner, joint, vertex, capture["target.reach"], turning, parameters, attitude)
+    bodies, reach = (chaser, target, catch, inner, joint, vertex), capture["target.reach"]
+    return Handoff(*bodies, reach, turning, parameters, attitude, appendage=appendage, swing=swing)
 
 
 def line_drawn(handed: Handoff, mass: float) -> Handoff:

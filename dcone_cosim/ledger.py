@@ -117,7 +117,8 @@ def ledger(
     """Every conserved quantity, before from the capture, after from what the removal was read back to hold.
 
     turning      of its target, None for a point
-    moving       of an appendage that is held fast, as the scene says, orbital axes
+    moving       of an appendage that is held fast, orbital axes: as the scene says; or as it swings in the capture,
+                 the spin and energy of whose target then have it in them
     """
     before = [handed.chaser, handed.target, handed.catch]
     chaser, target = held_bodies(removal)
@@ -125,7 +126,7 @@ def ledger(
         target = replace(target, spin=turning.spin, inertia=turning.inertia)
     after = [chaser, target]
     rows = _sum_rows(before, after)
-    rows += _angular_rows(before, after, handed.joint, handed.turning, moving)
+    rows += _angular_rows(before, after, handed.joint, handed.turning, moving if handed.swing is None else None)
     if turning is not None:
         rows += _inertia_rows(handed.joint, target)
     rows.append(_energy_row(handed, after, moving))
@@ -223,19 +224,20 @@ def _energy_row(handed: Handoff, after: list[Body], moving: Hinged | None) -> Le
         return 0.5 * body.mass * float(velocity @ velocity)
 
     before = [of_motion(b) for b in (handed.chaser, handed.target, handed.catch)]
-    before += [spin_energy(handed.target), handed.catch_energy]
+    before += [handed.turning_energy, handed.catch_energy]
     joint = handed.joint
     frozen = 0.0 if moving is None else moving.lost(joint.inertia)
-    if moving is not None:
-        before.append(moving.energy(joint.spin, joint.inertia))
+    swinging = 0.0 if moving is None else moving.energy(joint.spin, joint.inertia)
+    if handed.swing is None and moving is not None:
+        before.append(swinging)
     held = spin_energy(after[1])
-    spun = spin_energy(handed.joint)
+    spun = spin_energy(handed.joint) + (0.0 if handed.swing is None else swinging)
     dropped = 0.0 if after[1].inertia.any() else spun
     target, catch = handed.target, handed.catch
     closing = catch.inertial_velocity(turning) - target.inertial_velocity(turning)
     reduced = target.mass * catch.mass / handed.joint.mass
     meeting = 0.5 * reduced * float(closing @ closing)
-    lost = meeting + spin_energy(target) + handed.catch_energy - spun
+    lost = meeting + handed.turning_energy + handed.catch_energy - spun
     return LedgerRow(
         "kinetic energy",
         "J",

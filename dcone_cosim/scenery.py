@@ -71,6 +71,24 @@ class Net:
 
 
 @dataclass(frozen=True)
+class Swing:
+    """How a part of the target swings about a hinge. Its corners are drawn at angle 0, from the centre of mass then.
+
+    angle     of the hinge (frames,) [rad]
+    corners   whether each corner of the surface swings (corners,)
+    hinge     a point of the axis (3,) [m];  axis  its direction, a unit vector (3,); both in body axes
+    lag       way from the hinge to the part's centre of mass at angle 0, times its share of the mass (3,) [m]: by as
+              much as that turns the common centre of mass moves
+    """
+
+    angle: Array
+    corners: Array
+    hinge: Array
+    axis: Array
+    lag: Array
+
+
+@dataclass(frozen=True)
 class Clip:
     """What moved in a phase.
 
@@ -84,6 +102,7 @@ class Clip:
     held       whether the rest, from the end of the line to a target that is a point, is drawn
     taut       whether it is (frames,)
     bullets    (frames, bullets, 3) [m]
+    swing      how a part of the surface swings; None: it is one rigid body
     marks      instants and what they are
     notes      what a reader should know of the clip
     """
@@ -102,5 +121,6 @@ class Clip:
     held: bool = False
     bullets: Array | None = None
     net: Net | None = None
+    swing: Swing | None = None
     marks: Sequence[tuple[float, str]] = ()
     notes: Sequence[str] = field(default_factory=list)

@@ -122,7 +122,8 @@ class HandoffRecord:
     def asked_appendage(self) -> dict[str, float]:
         """Parameters of the target's appendage, from the centre of mass of target and net; empty where it has none."""
         shift = self.handed.target.position - self.handed.joint.position
-        return asked(self.phase.setting, rotation_matrix(self.handed.attitude).T @ shift)
+        known = self.handed.appendage.get if self.handed.appendage else self.phase.setting
+        return asked(known, rotation_matrix(self.handed.attitude).T @ shift)
 
     @property
     def appendage(self) -> Hinged | None:

@@ -241,7 +241,7 @@ class Model:
         ordered = {name: terms[name] for name in self.groups if name in terms}
         chosen = [self.groups[name].terms[term] for name, term in ordered.items()]
         lacking = {name for part in chosen for name in part.lacks}
-        own = {v.name: v for part in chosen for v in part.variables}
+        own = {v.name: v for part in chosen for v in part.variables if v.beside in {None, *ordered.items()}}
         rows = {v.name: v for v in HEAD + self.base if v.name not in lacking}
         variables = list((rows | own).values())
         inputs = {v.name for v in variables if v.causality == "input"}

@@ -33,6 +33,7 @@ class Variable:
     at_start     of an output: inputs that its value at the start depends on, beside those of `partials`
     fills        a scene may give fewer elements: the last one is repeated
     date         an instant: the value counts from 2000-01-01 12:00 UTC [s], and a scene may say the date
+    beside       of a state: group and term of it, beside which alone its part has this row; None: beside all
     """
 
     name: str
@@ -54,10 +55,13 @@ class Variable:
     at_start: tuple[str, ...] = ()
     fills: bool = False
     date: bool = False
+    beside: tuple[str, str] | None = None
 
     def __post_init__(self) -> None:
         if self.name.count(INDEX) != len(self.shape):
             raise ValueError(f"{self.name}: shape {self.shape} needs as many {INDEX}")
+        if self.beside is not None and self.causality != "state":
+            raise ValueError(f"{self.name}: a tool sees it, it cannot hang on the choice of {self.beside[0]}")
 
     @property
     def field(self) -> str:

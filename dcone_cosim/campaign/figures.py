@@ -40,12 +40,13 @@ s    handed_over_at thread.tension_max_time contact.first_time mouth.t80 mouth.t
 s    wall.emptied pull_off.t_start lost_after followed
 m    approach mouth.cord_length mouth.girth mouth.margin_at_capture contact.depth tether.paid_out
 m    quality.length quality.offset pull_off.drawn_max
+rad  hinge.angle hinge.angle_max hinge.angle_min
 m2   mouth.area_max mouth.area_at_touch quality.hull_surface
 m3   net.volume_at_touch quality.hull_volume
 N    thread.tension_max cord.tension_max pull_off.tension_max
 J    contact.loss contact.friction_loss closing.work closing.spring_energy closing.braked thread.dissipated
 J    cord.dissipated air.dissipated bending.dissipated wall.friction_loss gravity.work energy.remainder pull_off.work
-J    table.friction_loss self_contact.loss
+J    table.friction_loss self_contact.loss hinge.loss
 s    closing.timeout
 N s  recoil
 1    self_contact.touched self_contact.passed self_contact.at_start

@@ -10,9 +10,10 @@ import numpy as np
 
 from fmu_src.interface import Term
 from fmu_src.net_capture import force_map
-from fmu_src.net_capture.appendage.laying import corners_at
-from fmu_src.net_capture.hinge.numbers import BODY
+from fmu_src.net_capture.appendage.laying import corners_at, held_at, pieces_at, swung
+from fmu_src.net_capture.hinge import numbers as hinge
 from fmu_src.net_capture.interface import NETS, TARGETS, rigged_of
+from fmu_src.net_capture.shapes.union import PIECES
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.hull import CORNERS
 from orbital.corners import few_corners
@@ -74,7 +75,51 @@ def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Sur
 
 def target_swing(values: Mapping[str, Any], terms: Mapping[str, str]) -> Callable[[float], Any] | None:
     """Function of the angle of its hinge [rad]: corners of the target (n, 3) [m], body axes; None of one rigid body."""
-    return partial(corners_at, values) if "hinge" in terms and BODY in values else None
+    return partial(corners_at, values) if "hinge" in terms and hinge.BODY in values else None
+
+
+def target_at(values: Mapping[str, Any], terms: Mapping[str, str], angle: float) -> Mapping[str, Any]:
+    """Values of the target with its hinge at an angle [rad], for what asks of its surface then; of one rigid body the
+    same.
+
+    Checked  tests/cosim/test_hinged_panel.py
+    """
+    if "hinge" not in terms or hinge.BODY not in values:
+        return values
+    return {**values, PIECES: pieces_at(values, angle)}
+
+
+def target_hinge(values: Mapping[str, Any], terms: Mapping[str, str]) -> dict[str, Any] | None:
+    """Which corners of the target swing, a point of the hinge's axis [m], its direction, and `lag`, the way from that
+    point to the appendage's centre of mass at angle 0 times its share of the mass [m], body axes; None of one rigid
+    body.
+
+    Checked  tests/report/test_swing.py
+    """
+    if "hinge" not in terms or hinge.BODY not in values:
+        return None
+    table = values[hinge.BODY]
+    return {
+        "corners": swung(values),
+        "hinge": table[hinge.HINGE : hinge.AXIS],
+        "axis": table[hinge.AXIS : hinge.ARM],
+        "lag": table[hinge.SHARE] * table[hinge.ARM : hinge.REST],
+    }
+
+
+def appendage_held(values: Mapping[str, Any], terms: Mapping[str, str], angle: float, rate: float) -> dict[str, float]:
+    """A capture's hinged appendage at an angle [rad] and rate [rad/s] of its hinge, by the removal's names, places from
+    the centre of mass of target and appendage; empty where none is known.
+
+    Checked  tests/cosim/test_hinge_handed_over.py
+    """
+    if "hinge" not in terms or hinge.BODY not in values:
+        return {}
+    found, order = held_at(values, angle), ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    told = {"appendage.mass": found["mass"][0], "appendage.rate": rate}
+    told |= {f"appendage.inertia[{k + 1}]": found["inertia"][place] for k, place in enumerate(order)}
+    told |= {f"appendage.{name}[{i + 1}]": found[name][i] for name in ("center", "hinge", "axis") for i in range(3)}
+    return {name: float(value) for name, value in told.items()}
 
 
 def towed_surface(term: str) -> str:
@@ -82,13 +127,20 @@ def towed_surface(term: str) -> str:
     return term if term not in TARGETS or term in SURFACES else "hull"
 
 
-def hull_corners(values: Mapping[str, Any], terms: Mapping[str, str]) -> tuple[dict[str, float], float]:
+def hull_corners(
+    values: Mapping[str, Any], terms: Mapping[str, str], angle: float = 0.0
+) -> tuple[dict[str, float], float]:
     """Corners of the hull that a target of ours is towed as, by the removal's names, body axes [m], and how far the
-    target reaches beyond that hull at most [m]; none for one that is towed with its own surface."""
+    target reaches beyond that hull at most [m]; none for one that is towed with its own surface.
+
+    angle    of its hinge, where it has one [rad]
+    """
     surface = target_surface(values, terms) if towed_surface(terms.get("target", "")) == "hull" else None
     if surface is None:
         return {}, 0.0
-    corners, short = few_corners(np.array(surface[0], dtype=float), CORNERS)
+    swing = target_swing(values, terms)
+    drawn = np.array(surface[0], dtype=float) if swing is None else swing(angle)
+    corners, short = few_corners(drawn, CORNERS)
     filled = np.vstack([corners, np.repeat(corners[-1:], CORNERS - len(corners), axis=0)])
     names = ((f"target.corner_{axis}[{k + 1}]", k, i) for i, axis in enumerate("xyz") for k in range(CORNERS))
     return {name: float(filled[k, i]) for name, k, i in names}, short

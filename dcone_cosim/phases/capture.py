@@ -15,7 +15,7 @@ from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
-from dcone_cosim.phases import capture_clip, capture_criteria, capture_quantities, capture_report, chaos
+from dcone_cosim.phases import capture_clip, capture_criteria, capture_quantities, capture_report, chaos, swinging
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage, failed
 from dcone_cosim.quantities import Quantity
@@ -99,11 +99,7 @@ class Capture(Phase):
         group = NEEDED_FOR.get(given) if isinstance(given, str) else None
         if part.fmu is None and group is not None and group not in part.terms:
             yield Mistake(path, given, f"needs the table [capture.{group}], which this scene lacks")
-        mine = document.mains[self.name]
-        if mine.fmu is None and "hinge" in mine.terms and (document.before(self.name) or document.after(self.name)):
-            other = document.after(self.name) or document.before(self.name)
-            text = f"goes with this phase alone: what is handed over to or from a {other} is one rigid target"
-            yield Mistake((self.name, "hinge"), None, text)
+        yield from swinging.faults(document, self.name)
         every = document.tables["capture"].get("replay_every")
         if every is not None and part.fmu is None and "nodes" not in part.terms:
             yield Mistake(("capture", "replay_every"), every, "needs the table [capture.nodes], which this scene lacks")

@@ -14,7 +14,7 @@ from dcone_cosim.findings import spoken
 from dcone_cosim.phases import chaos
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
-from dcone_cosim.scenery import Array, Chart, Clip, Net, Series
+from dcone_cosim.scenery import Array, Chart, Clip, Net, Series, Swing
 
 AGAIN = "dcone run ... --replay"
 """What keeps the net for a replay."""
@@ -40,10 +40,7 @@ def clip(run: RunResult, phase: PhaseScene, result: PhaseResult, marks: Sequence
     net, rows, notes = _net(result, build.net_drawing(values, terms))
     notes += _between(net, result)
     surface = build.target_surface(values, terms) if "target.position[1]" in recorder else None
-    if build.target_swing(values, terms) is not None:
-        notes.append(
-            "the hinged appendage is drawn at angle 0: this page does not swing it; hinge.angle tells where it is"
-        )
+    hinge = build.target_hinge(values, terms) if "hinge.angle" in recorder else None
     numbers = bullets(recorder.names)
     shots = np.stack([recorder.vector(f"bullet[{b}].position") for b in numbers], axis=1) if numbers else None
     return Clip(
@@ -58,6 +55,7 @@ def clip(run: RunResult, phase: PhaseScene, result: PhaseResult, marks: Sequence
         recorder.vector("vertex.position")[rows] if "vertex.position[1]" in recorder else None,
         bullets=None if shots is None else shots[rows],
         net=net,
+        swing=None if hinge is None or surface is None else Swing(recorder["hinge.angle"][rows], **hinge),
         marks=marks,
         notes=notes,
     )
@@ -105,7 +103,7 @@ def drawn_threads(drawing: build.Drawing | None, count: int) -> Array:
 
 
 def charts(result: PhaseResult, marks: Sequence[tuple[float, str]]) -> Iterator[Chart]:
-    """Mouth, tensions and energies over time."""
+    """Mouth, tensions, energies and the angle of a hinge over time."""
     recorder = result.recorder
     if len(recorder) < SEVERAL:
         return
@@ -136,6 +134,9 @@ def charts(result: PhaseResult, marks: Sequence[tuple[float, str]]) -> Iterator[
         )
         if series:
             yield Chart(key, title, "time since the shot", unit, series, marks=marks)
+    if "hinge.angle" in recorder:
+        angle = Series("angle", recorder["time"], np.degrees(recorder["hinge.angle"]))
+        yield Chart("hinge", "Angle of the hinged appendage", "time since the shot", "deg", [angle], marks=marks)
 
 
 def _apart(series: Sequence[Series]) -> Iterator[Series]:

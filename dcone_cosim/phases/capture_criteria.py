@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dcone_cosim import build
+from dcone_cosim.appendage import ANGLE
 from dcone_cosim.contract import bullets
 from dcone_cosim.criteria import Criterion, Evidence, finite, rise
 from dcone_cosim.quantities import Array
@@ -212,7 +213,10 @@ def _substep(evidence: Evidence) -> float:
 
 
 def _depth(evidence: Evidence) -> Iterator[Criterion]:
-    """The deepest that a node lay below the target's surface, by the shape as it is drawn."""
+    """The deepest that a node lay below the target's surface, by the shape as it is drawn, at the angle of its hinge.
+
+    Checked  tests/cosim/test_hinged_panel.py
+    """
     if "contact" not in evidence.terms or not evidence.nodes or not evidence.has("target.attitude", "target.position"):
         return
     distance = build.target_distance(evidence.values, evidence.terms)
@@ -224,8 +228,10 @@ def _depth(evidence: Evidence) -> Iterator[Criterion]:
         body = (nodes - places[row]) @ matrix(attitudes[row])
         reach = math.inf if not len(body) else float(np.abs(body).max())
         near = body if reach < math.inf else body[:0]
+        angle = float(evidence.columns[ANGLE][row]) if evidence.has(ANGLE) else 0.0
+        values = build.target_at(evidence.values, evidence.terms, angle)
         for point in near:
-            deepest = min(deepest, distance(evidence.values, point.tolist()))
+            deepest = min(deepest, distance(values, point.tolist()))
     give = _give(evidence)
     label = "deepest node below the target's surface"
     yield Criterion("depth", label, -deepest, "m", DEPTH + 2.0 * give, DEEPEST + 10.0 * give)

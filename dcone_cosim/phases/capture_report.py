@@ -41,6 +41,7 @@ _CAPTURE_ROWS = (
     ("air.dissipated", "energy taken by the air", "J"),
     ("wall.friction_loss", "energy taken by friction in the canister", "J"),
     ("table.friction_loss", "energy taken by friction on the table", "J"),
+    ("hinge.loss", "energy taken by the appendage's dashpot and stops", "J"),
     ("wall.emptied", "the last of the net out of its canister at", "s"),
     ("bending.dissipated", "energy taken by the damping of bending", "J"),
     ("self_contact.loss", "energy taken by contact of threads with each other", "J"),
@@ -72,6 +73,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         label = "counts as not closed after, from the start of the reels (closing.timeout)"
         yield Finding(result.name, "closing.timeout", label, parameters["closing.timeout"], "s")
     yield from _at_the_touch(last, result)
+    yield from _of_hinge(result)
     yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
     yield from _of_approach(result)
@@ -104,6 +106,22 @@ def _at_the_touch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Fi
         if touch >= 0.0 and name in recorder and len(recorder) > 1:
             value = float(np.interp(touch, recorder["time"], recorder[name]))
             yield Finding(result.name, key, label, value, unit)
+
+
+def _of_hinge(result: PhaseResult) -> Iterator[Finding]:
+    """How far a hinged appendage swung to both sides, and where it is at the end.
+
+    Checked  tests/cosim/test_hinged_panel.py
+    """
+    recorder = result.recorder
+    if len(recorder) and "hinge.angle" in recorder:
+        angle = recorder["hinge.angle"]
+        for key, label, value in (
+            ("hinge.angle_max", "largest angle of the appendage, from how it is drawn (of rows)", angle.max()),
+            ("hinge.angle_min", "least angle of the appendage (of rows)", angle.min()),
+            ("hinge.angle", "angle of the appendage at the end", angle[-1]),
+        ):
+            yield Finding(result.name, key, label, float(value), "rad", shown_in="deg")
 
 
 def _of_hardest(last: Mapping[str, float], result: PhaseResult) -> Iterator[Finding]:

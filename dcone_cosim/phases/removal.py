@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim import build, pulled
+from dcone_cosim.appendage import ANGLE, SWINGS
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import HANDOFF_FAILED, FmuError, Interrupted
@@ -24,7 +25,6 @@ from dcone_cosim.handoff import (
     line_drawn,
     mean_motion,
     prepare,
-    require_rigid,
 )
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
@@ -38,6 +38,7 @@ from dcone_cosim.phases import (
     removal_criteria,
     removal_quantities,
     removal_report,
+    swinging,
     tow_clip,
 )
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
@@ -221,9 +222,11 @@ class Tow(Phase):
             if phase.name == self.name or phase.main.model == self.model:
                 continue
             values = {**run.parameters.get(phase.name, {}), **phase.main.made}
-            found = build.target_surface(values, phase.main.terms)
+            found, swing = build.target_surface(values, phase.main.terms), build.target_swing(values, phase.main.terms)
             if found is not None:
-                surface = (np.array(found[0], dtype=float), [list(face) for face in found[1]])
+                angle = run.left.get(phase.name, {}).get(ANGLE, 0.0)
+                corners = np.array(found[0] if swing is None else swing(angle), dtype=float)
+                surface = (corners, [list(face) for face in found[1]])
         since = self._since(run).partition(" ")[2]
         return tow_clip.clip(self.name, result, since, run.parameters.get(self.name, {}), surface)
 
@@ -258,7 +261,7 @@ class Removal(Tow):
     }
     recognised_by: Sequence[str] = ("separation", *REMOVAL_SETS)
     takes: Sequence[str] = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)
-    takes_too: Sequence[str] = (LINE,)
+    takes_too: Sequence[str] = (LINE, *SWINGS)
 
     def faults(self, document: Document) -> Iterator[Mistake]:
         """The same, and orbits on which capture and removal do not fit together."""
@@ -339,8 +342,9 @@ class Removal(Tow):
         left, altitude = run.left[stage.before.name], phase.setting("orbit.altitude")
         assert altitude is not None, "the contract asks for it"
         assert capture.located is not None, "it has handed over"
-        require_rigid(capture.recorder.names)
-        handed = prepare(left, mean_motion(altitude))
+        held, main = run.parameters[stage.before.name], stage.before.main
+        swung = swinging.held(stage.before, phase, held, left)
+        handed = prepare(left, mean_motion(altitude), swung)
         if drawn := build.line_mass(phase.main.values, phase.main.terms):
             handed = line_drawn(handed, drawn)  # it was on the reel
         line = line_of(handed, left.get(LINE, phase.setting(REST_LENGTH)))
@@ -349,10 +353,8 @@ class Removal(Tow):
         record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line, earlier)
         run.handovers[self.name] = record
         record.net = pulled.Pulled.of(left, run.scene.handoff.net_compliance)
-        held = run.parameters[stage.before.name]
-        main = stage.before.main
         record.shape = {name: held[name] for name in SHAPE if name in held}
-        corners, record.shortfall = build.hull_corners({**held, **main.made}, main.terms)
+        corners, record.shortfall = build.hull_corners({**held, **main.made}, main.terms, left.get(ANGLE, 0.0))
         record.shape |= corners
         check_before(record, run.scene.handoff, build.towed_surface(main.terms.get(GROUP, "")))
         self.foresee(stage)

@@ -240,6 +240,7 @@ def _bodies(references: Mapping[str, Any]) -> dict[str, list[str]]:
         "chaser": [f"chaser.position[{i}]" for i in (1, 2, 3)],
         "target": [f"target.position[{i}]" for i in (1, 2, 3)],
         "attitude": [f"target.attitude[{i}]" for i in (1, 2, 3, 4)],
+        "angle": ["hinge.angle"],
         "line": [f"vertex.position[{i}]" for i in (1, 2, 3)],
         "bullets": [f"bullet[{b}].position[{i}]" for b in numbers for i in (1, 2, 3)],
     }

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim.scenery import Array, Chart, Clip, Net
+from dcone_cosim.scenery import Array, Chart, Clip, Net, Swing
 
 FLOOR = 1e-3
 """Tension told from slack, over the largest: what bears less is shown as slack."""
@@ -90,6 +90,8 @@ def clip(one: Clip) -> dict[str, Any]:
             told[name] = singles(values[keep])
     if one.surface is not None:
         told["surface"] = {"corners": np.asarray(one.surface[0]).tolist(), "faces": one.surface[1]}
+    if one.swing is not None:
+        told |= {"swing": _swing(one.swing), "angle": singles(one.swing.angle[keep])}
     if one.tension is not None:
         told["tension"] = tensions(one.tension[keep], float(np.max(one.tension, initial=0.0)))
     if one.taut is not None:
@@ -105,6 +107,12 @@ def _stride(net: Net | None) -> int:
         return 1
     size = 2 * net.nodes.size + (0 if net.tensions is None else net.tensions.size)
     return max(1, -(-size // MOST_BYTES))
+
+
+def _swing(swing: Swing) -> dict[str, Any]:
+    """What of the body swings, and about what; its angle is told beside."""
+    places = {name: np.asarray(getattr(swing, name), dtype=float).tolist() for name in ("hinge", "axis", "lag")}
+    return {"corners": np.asarray(swing.corners, dtype=bool).tolist(), **places}
 
 
 def _net(net: Net, keep: Array) -> dict[str, Any]:

@@ -20,13 +20,14 @@ import math
 from typing import Any, NamedTuple
 
 from fmu_src.net_capture import visit_list as of
-from fmu_src.net_capture.contact.section import LEAN, make_section
+from fmu_src.net_capture.contact.section import FACES_MET, LEAN, WALL, make_section
 from fmu_src.net_capture.lying import Lie
 from fmu_src.net_capture.near import BENT, FINE, JUMP, SHARE, WAY
 from fmu_src.net_capture.planes import P, X
 from fmu_src.net_capture.shapes.hulls import MIDDLE, RADIUS
 from fmu_src.net_capture.visits import make_visits
 from orbital.kernel import kernel
+from orbital.vectors import distance
 
 KEPT = of.KEPT
 """Whole numbers kept of each thread behind those that any has."""
@@ -35,8 +36,10 @@ STEP = 1e-3
 below them, do not fit together better."""
 MEETINGS = 2 * of.VISITS
 """Bodies that a thread may meet in one substep."""
-SIDES = 3
-"""Of a body on which a way may go round it, see `section`."""
+SIDES = (FACES_MET, WALL, LEAN)
+"""Of a body on which a way may go round it, see `section`, in the order in which they are tried."""
+LEAN_FIRST = SIDES.index(LEAN)
+"""Where that order begins once a visit has ended: the way leans to where that was."""
 CORNERS = 24
 """Corners over which a way may slide in one substep."""
 MARGIN = 0.01
@@ -63,7 +66,7 @@ class Rounds(NamedTuple):
 def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
     """Kernels for the composition's target, behind so many whole numbers kept of each thread."""
     hulls, rubs = composition.target.shape.hulls, remember is not None
-    bodies_of, stand, straight_of, reckon = hulls.bodies, lie.stand, lie.straight, lie.reckon
+    bodies_of, stand, reckon = hulls.bodies, lie.stand, lie.reckon
     listed, cut = of.make_visit_list(), make_section(True).cut
     recall, keep, name, owner, pass_through = listed.recall, listed.keep, listed.name, listed.owner, listed.remember
     relax, length_of, ends, take, insert, replace = make_visits(hulls, lie, listed)
@@ -94,17 +97,6 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return clear
 
     @kernel
-    def apart(p):
-        """How far both ends of the way are apart [m].
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        squared = 0.0
-        for i in range(3):
-            squared += (p.wrap_to[i] - p.wrap_from[i]) * (p.wrap_to[i] - p.wrap_from[i])
-        return math.sqrt(squared)
-
-    @kernel
     def take_up(p, work, words, place, a, b, at, reach):
         """The way of a thread between these nodes as it is kept, to where they are now; over how many edges it bends.
 
@@ -117,7 +109,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         for i in range(3):
             p.wrap_from[i] = p.wrap_a[i]
             p.wrap_to[i] = p.wrap_b[i]
-        p.wrap_far = gather(p, max(reach, straight_of(p)) + MARGIN)
+        p.wrap_far = gather(p, max(reach, distance(p.wrap_from, p.wrap_to)) + MARGIN)
         recall(p, words, place)
         if rubs:
             name(p)
@@ -207,8 +199,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         before = max(expected, length_of(p, edges) if edges > 0 else expected)
         keep(p, words, place)
         left = p.visits_left
-        for attempt in range(SIDES + 1):
-            side = (left + 2 * attempt) % SIDES
+        for attempt in range(len(SIDES) + 1):
+            side = SIDES[((LEAN_FIRST if left > 0 else 0) + attempt) % len(SIDES)]
             if side == LEAN and left == 0 and edges == 0:
                 continue
             if attempt > 0:
@@ -219,7 +211,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             if found > 0:
                 way = length_of(p, found)
                 within = JUMP + share * p.solver_substep * abs(rate(p, work, a, b, found))
-                if way <= before + max(within, STEP) or (attempt == SIDES and way <= length):
+                if way <= before + max(within, STEP) or (attempt == len(SIDES) and way <= length):
                     return found
         recall(p, words, place)
         return 0
@@ -328,7 +320,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         place = at + kept * p.wrap_numbers
         edges = take_up(p, work, words, place, a, b, X, before)
         lost = p.visits_lost
-        straight = apart(p)
+        straight = distance(p.wrap_from, p.wrap_to)
         expected = before if bent else straight
         for _ in range(CORNERS):
             moved = p.visits_moved
@@ -364,7 +356,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         if rubs:
             name(p)
         if edges == 0:
-            return 0, apart(p), 0.0, 0.0, 0.0
+            return 0, distance(p.wrap_from, p.wrap_to), 0.0, 0.0, 0.0
         return reckon(p, work, a, b, place, rate, edges)
 
     return Rounds(seek, again)

@@ -91,7 +91,8 @@ class Composition:
         self.numbering = make_numbering(self)
         self.rigging = [self._make(group) for group in riggings() if group in terms]
         self.graph, self.peaks = make_graph(self), make_peaks(self)
-        self.target, self.gradient = self._make("target"), self._make("gravity_gradient")
+        self.target = self._make("target")
+        self.gradient = self._make("gravity_gradient")
         self.force_map = self._make("force_map")
         self.contact = self._make("contact")
         self.cord_bends = make_cord_bends(self)

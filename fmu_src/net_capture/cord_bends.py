@@ -2,8 +2,9 @@
 
 The cord runs through rings without friction, and so it does round edges: its way is the sum of those of its
 stretches, and its tension is the same in all. The target takes what is left of it at the first and last bend of each. A
-stretch that slides over a corner makes it shorter at once; what it held beyond that is lost (`wrap.slip_loss`). Before
-the reels run nothing is known of it, and as they begin each stretch lies on the side of a body that is the nearest.
+stretch that slides over a corner makes it shorter at once; what it held beyond that is lost (`wrap.slip_loss`), and
+what it gains by a step from body to body is taken from that. Before the reels run nothing is known of it, and as they
+begin each stretch lies on the side of a body that is the nearest.
 
 Checked  tests/net_capture/test_union_wrapping.py
 """
@@ -28,8 +29,9 @@ class CordBends(NamedTuple):
     """Kernels of stretch number n of the cord, between two nodes; places and rates in the planes from these on.
 
     stretches(p)                                  how many there are
-    meet(p, work, n, a, b, slack) -> fall         how it lies now, and keep that; by how much it is shorter at once [m].
-                                                  slack: however it lies, it may have come to lie so
+    meet(p, work, n, a, b, slack) -> fall         how it lies now, and keep that; by how much it is shorter at once [m],
+                                                  less than 0: longer. slack: however it lies, it may have
+                                                  come to lie so
     bent(p, work, n)                              whether it bends
     reach(p, work, n, a, b, place, rate)          length of its way [m] and the rate of that [m/s]
     draw(p, work, n, a, b, place, tension)        a tension [N] in it, and what that gives the target in a substep
@@ -85,7 +87,7 @@ def make_cord_bends(composition: Any) -> CordBends | None:
         edges, way, going, _, _ = seek(p, work, words, at, a, b, 1e9 if slack else 0.0)
         words[at] = BENT if edges > 0 else FREE
         words[at + WAY * p.wrap_numbers] = np.int64((way + p.solver_substep * going) / FINE)
-        if before == FREE or way >= expected - JUMP - SHARE * p.solver_substep * abs(going):
+        if before == FREE or abs(way - expected) <= JUMP + SHARE * p.solver_substep * abs(going):
             return 0.0
         p.wrap_slipped += 1
         return expected - way

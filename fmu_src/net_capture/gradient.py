@@ -3,20 +3,21 @@
     tau = 3 mu/r^3 u x I u,   V = (3/2) mu/r^3 (u.I u - tr I/3)
 
 about the target's centre of mass, u the way from the Earth to it and I its whole inertia, both in body axes. Those are
-principal axes of every target. On the circular orbit whose frame is Hill's, mu/r^3 is the square of the frame's rate
-and u is its first axis, at rest there. Where the target is off the orbit by some metres, both differ by as much over r,
+principal axes of every rigid target; of one with a hinge I is that at the angle of now, and the hinge is given -dV/dq
+(`hinge.matrix.find_lean`). On the circular orbit whose frame is Hill's, mu/r^3 is the square of the frame's rate and u
+is its first axis, at rest there. Where the target is off the orbit by some metres, both differ by as much over r,
 which Hill's equations leave out too.
 
 The spin is kicked for half a substep before and after the target has turned:
 
     S <- S + h/2 tau(q),   (q, S) turn freely by h,   S <- S + h/2 tau(q)
 
-So spin and attitude are always of one instant, and what contact does between them stays as it is. The whole is of
-second order, as the free turning is.
+and the momentum of a hinge likewise. So momenta and angles are always of one instant, and what contact does between
+them stays as it is. The whole is of second order, as the free turning is.
 
 Valid    bodies much smaller than r; circular orbit
 Source   Hughes, Spacecraft Attitude Dynamics (1986), section 8.1; the splitting is Stormer's and Verlet's
-Checked  tests/net_capture/test_gradient.py
+Checked  tests/net_capture/test_gradient.py, tests/net_capture/test_hinged_gradient.py
 """
 
 from __future__ import annotations
@@ -57,10 +58,12 @@ def make(composition: Any) -> Gradient:
     strength = composition.gravity.gradient
     if strength is None:
         raise ValueError(f"net_capture: a gravity gradient needs gravity = {' or '.join(map(repr, ORBITS))}")
+    hinge = composition.target.hinge
+    swings, lean = hinge is not None, hinge.lean if hinge is not None else None
 
     @kernel
     def start(p):
-        """Nothing given yet; the inertia as a matrix, about the body's principal axes.
+        """Nothing given yet; the inertia as a matrix, about the principal axes of a rigid body.
 
         Checked  tests/net_capture/test_gradient.py
         """
@@ -82,13 +85,17 @@ def make(composition: Any) -> Gradient:
 
     @kernel
     def find_torque(p, out):
-        """out = torque on the target at its attitude of now, orbital axes [N m].
+        """out = torque on the target at its attitude, and angle of its hinge, of now, orbital axes [N m].
 
             tau = R (3 mu/r^3 u x I u)
 
         Checked  tests/net_capture/test_gradient.py
         """
         upward(p, p.gradient_up)
+        if swings:
+            for i in range(3):
+                for j in range(3):
+                    p.gradient_inertia[i, j] = p.hinge_whole[i, j]
         gradient_torque(out, p.gradient_inertia, p.gradient_up, strength(p))
         rotate(out, p.target_pose, out)
 
@@ -103,6 +110,8 @@ def make(composition: Any) -> Gradient:
         for i in range(3):
             p.target_spin[i] += h * torque[i]
             p.gravity_gradient_angular_impulse[i] += h * torque[i]
+        if swings:
+            lean(p, p.gradient_up, h * strength(p))
 
     @kernel
     def carry(p, frame_rate, h):
@@ -121,9 +130,12 @@ def make(composition: Any) -> Gradient:
         Checked  tests/net_capture/test_gradient.py
         """
         find_torque(p, p.gravity_gradient_torque)
+        inertia, up = p.gradient_inertia, p.gradient_up
         total = 0.0
         for i in range(3):
-            total += p.target_inertia[i] * (p.gradient_up[i] * p.gradient_up[i] - 1.0 / 3.0)
+            total -= inertia[i, i] / 3.0
+            for j in range(3):
+                total += up[i] * inertia[i, j] * up[j]
         p.gravity_gradient_energy = 0.5 * strength(p) * total
 
     return Gradient(start, kick, carry, measure)

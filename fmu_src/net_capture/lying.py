@@ -11,7 +11,7 @@ from fmu_src.net_capture.contact.section import FACES, MOST
 from fmu_src.net_capture.planes import STRIP_WORDS, A, B
 from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
-from orbital.vectors import cross
+from orbital.vectors import cross, distance
 
 SHORT = 1e-12
 """Metres: a piece no shorter than that, where it is divided by."""
@@ -24,7 +24,6 @@ class Lie(NamedTuple):
     find(p, edges)                             see `contact.edges.make_way`
     ends(p, work, code)                        its nodes
     stand(p, work, a, b, place)                its ends into `wrap_a` and `wrap_b`, body axes
-    straight(p)                                how far they are apart [m]
     reckon(p, work, a, b, place, rate, edges)  of its way over so many edges, which is in `wrap_bends`: as `look`
     look(p, work, code, place, rate, edges)    how many edges it bends over; length and rate of its way and of the
                                                straight one [m], [m/s]
@@ -34,7 +33,6 @@ class Lie(NamedTuple):
     find: Any
     ends: Any
     stand: Any
-    straight: Any
     reckon: Any
     look: Any
     lose: Any
@@ -69,17 +67,6 @@ def make_lie(composition: Any, remember: Any) -> Lie:
             p.wrap_last[axis] = x[b] - p.target_place[axis]
         rotate_inverse(p.wrap_a, p.target_pose, p.wrap_first)
         rotate_inverse(p.wrap_b, p.target_pose, p.wrap_last)
-
-    @kernel
-    def straight_length(p):
-        """How far both ends are apart [m].
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        squared = 0.0
-        for axis in range(3):
-            squared += (p.wrap_b[axis] - p.wrap_a[axis]) * (p.wrap_b[axis] - p.wrap_a[axis])
-        return math.sqrt(squared)
 
     @kernel
     def reckon(p, work, a, b, place, rate, edges):
@@ -149,7 +136,7 @@ def make_lie(composition: Any, remember: Any) -> Lie:
         if rubs:
             name(p, edges)
         if edges == 0:
-            return 0, straight_length(p), 0.0, 0.0, 0.0
+            return 0, distance(p.wrap_a, p.wrap_b), 0.0, 0.0, 0.0
         return reckon(p, work, a, b, place, rate, edges)
 
     @kernel
@@ -171,4 +158,4 @@ def make_lie(composition: Any, remember: Any) -> Lie:
         else:
             p.wrap_passed_slack += 1
 
-    return Lie(find, ends, stand, straight_length, reckon, look, lose)
+    return Lie(find, ends, stand, reckon, look, lose)

@@ -252,7 +252,7 @@ def make_target(composition: Any, part: Term) -> Target:
     uniform_inertia, measure_shape, shape_sample = shape.inertia, shape.measure, shape.sample
     given_otherwise, axes = shape.axes is not None, shape.axes
     swings = "hinge" in composition.terms
-    hinge = make_hinge(composition) if swings else None
+    hinge = make_hinge(composition, shape.swings) if swings else None
     place_hinge, drift_hinge, measure_hinge, extent, follow = (
         (hinge.place, hinge.drift, hinge.measure, hinge.extent, hinge.follow) if hinge is not None else [None] * 5
     )
@@ -300,7 +300,9 @@ def make_target(composition: Any, part: Term) -> Target:
             spin[i] = principal[i] * p.target_rate[i]
         rotate(p.target_spin, p.target_pose, spin)
         if swings:
-            place_hinge(p)
+            fault = place_hinge(p)
+            if fault != 0:
+                return fault
         p.target_thickness = math.inf
         p.target_edge = 0.0
         measure_shape(p)

@@ -3,14 +3,32 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from fmu_src.extremes import Extreme
 from fmu_src.net_capture.contact.section import FACES, MOST
+from fmu_src.net_capture.shapes.union import BESIDE
 from fmu_src.net_capture.visit_list import rows as visits
 from fmu_src.rows import count, output, peak, state
 
-ROWS = (
+OF_UNIONS = (
     *visits(),
+    count("wrap_body", "which body that is round which a way goes, counted from 0", "state"),
+    count("wrap_once", "whether a way slides over one corner alone in a search", "state"),
+    count("wrap_slid", "whether it has", "state"),
+    state("wrap_bent[#][#]", "m", "where it bent first and last then, body axes", shape=(2, 3)),
+    count("wrap_leans", "on which side of the body a way is sought", "state"),
+    state("wrap_lean[#]", "m", "where a thread bends already, from its end, body axes", shape=(3,)),
+    count("wrap_whole[#]", "faces over which a way goes with those in other bodies", "state", shape=(MOST + 1,)),
+    count("wrap_covered[#]", "whether a face of the body lies in other bodies", "state", shape=(FACES,)),
+    state("wrap_grazes", "m", "by how much deeper than ways lie a piece of one may graze a body"),
+    state("wrap_near", "m", "how far a thread is from bodies near it, at least"),
+    state("wrap_far", "m", "how far it is from all others, at least"),
+)
+"""Of ways among several bodies."""
+
+ROWS = (
+    *(replace(row, beside=BESIDE) for row in OF_UNIONS),
     count("wrap.threads", "taut threads that bend round an edge now"),
     count("wrap.passed", "how often a taut thread has gone through the target"),
     count(
@@ -33,20 +51,10 @@ ROWS = (
     count("wrap_listed", "threads near the target", "state"),
     count("wrap_next", "substep at which they are looked up again", "state"),
     count("wrap_faces", "faces of the body round which a way goes", "state"),
-    count("wrap_body", "which of several that is, counted from 0", "state"),
     count("wrap_lost", "whether a way went on from where it was known, could not, or is wound too far", "state"),
-    count("wrap_once", "whether a way slides over one corner alone in a search", "state"),
-    count("wrap_slid", "whether it has", "state"),
-    state("wrap_bent[#][#]", "m", "where it bent first and last then, body axes", shape=(2, 3)),
-    count("wrap_leans", "whether a way is sought on the side of wrap_lean", "state"),
     count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
-    count("wrap_whole[#]", "the same with faces that lie in other bodies", "state", shape=(MOST + 1,)),
     count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
-    count("wrap_covered[#]", "whether a face of the body lies in other bodies", "state", shape=(FACES,)),
     state("wrap_clear", "m", "how far a thread is from the target, at least"),
-    state("wrap_grazes", "m", "by how much deeper than ways lie a piece of one may graze a body"),
-    state("wrap_near", "m", "how far it is from bodies near it, at least"),
-    state("wrap_far", "m", "how far it is from all others, at least"),
     state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
     state("wrap_substep", "s", "the substep then"),
     state("wrap_soft", "m", "by which the pieces of a way have no creases, while it is sought"),
@@ -76,7 +84,6 @@ ROWS = (
             ("last", "1", "direction from the last bend to the other end"),
             ("line", "1", "direction of the straight thread"),
             ("up", "1", "direction across it, body axes"),
-            ("lean", "m", "where a thread bends already, from its end, body axes"),
         )
     ),
 )

@@ -141,7 +141,7 @@ def make(composition: Any) -> Wrap:
     def slip(p, before, way, length, stiffness):
         """Book what a taut thread loses as its way gets shorter at once, or gains by a step from body to body [J].
 
-        Checked  tests/net_capture/test_wrapping.py
+        Checked  tests/net_capture/test_slip_loss.py
         """
         held, kept = max(0.0, before - length), max(0.0, way - length)
         p.wrap_slipped += 1

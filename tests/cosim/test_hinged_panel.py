@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build
+from dcone_cosim.criteria import Evidence
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.handoff import require_rigid
 from dcone_cosim.loading import load, shipped
+from dcone_cosim.phases import capture_clip, capture_criteria
+from dcone_cosim.phases.capture_report import findings
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import SceneError
 from tests.cosim.test_warnings import cautions
 
@@ -51,7 +57,7 @@ def test_the_scene_that_is_shipped() -> None:
         (lambda s: s.replace('start_rate = "10 deg/s"', 'start_angle = "91 deg"'), "within hinge.limit, 90 deg"),
         (lambda s: s.replace("[capture.contact]", "[capture.wrap]\n\n[capture.contact]"), "cannot go together"),
         (lambda s: s.replace("[capture.contact]", "[capture.force_map]\n\n[capture.contact]"), "cannot go together"),
-        (lambda s: s + TOW, "what is handed over to or from a removal is one rigid target"),
+        (lambda s: s + TOW, "is held fast by the removal that follows, which needs for it"),
         (without_hinge, "piece 2 says `hinged = true`, which needs the table [capture.hinge]"),
         (
             lambda s: s.replace('shape = "union"', f'shape = "union"\n{INERTIA}'),
@@ -77,6 +83,43 @@ def test_a_capture_that_tells_of_a_hinge_hands_nothing_over() -> None:
         require_rigid(("target.attitude[1]", "hinge.angle"))
 
 
+def swung() -> PhaseResult:
+    """Rows of a capture whose wing swings."""
+    angle, place = np.radians([0.0, 12.0, -9.0, 4.0]), np.zeros(4)
+    rows = {"hinge.angle": ("rad", "Real", angle), "hinge.loss": ("J", "Real", np.array([0.0, 0.1, 0.25, 0.3]))}
+    rows |= {f"{body}.position[{i}]": ("m", "Real", place + i) for body in ("chaser", "target") for i in (1, 2, 3)}
+    rows |= {f"target.attitude[{i}]": ("1", "Real", place + (i == 1)) for i in (1, 2, 3, 4)}
+    return PhaseResult("capture", 0.0, Recorder.of({"time": ("s", "Real", np.arange(4.0)), **rows}))
+
+
+def test_a_run_tells_how_far_it_swung() -> None:
+    found = {one.key: one for one in findings(RunResult(scene=Scene("one", "", "", ())), swung())}
+    told = {name: (one.value, one.unit, one.shown_in) for name, one in found.items() if name.startswith("hinge.")}
+    assert told == {
+        "hinge.loss": (0.3, "J", ""),
+        "hinge.angle_max": (np.radians(12.0), "rad", "deg"),
+        "hinge.angle_min": (np.radians(-9.0), "rad", "deg"),
+        "hinge.angle": (np.radians(4.0), "rad", "deg"),
+    }
+    (chart,) = (one for one in capture_clip.charts(swung(), ()) if one.key == "hinge")
+    np.testing.assert_allclose(chart.series[0].y, [0.0, 12.0, -9.0, 4.0])
+    assert chart.unit == "deg"
+
+
+def test_a_page_has_the_angle_of_its_frames() -> None:
+    """And which corners swing: those of boom and wing."""
+    phase = load(NAME).phases[0]
+    run = RunResult(scene=Scene("one", "", "", (phase,)), parameters={"capture": dict(phase.main.values)})
+    clip = capture_clip.clip(run, phase, swung(), ())
+    assert clip is not None
+    assert clip.swing is not None
+    assert clip.surface is not None
+    np.testing.assert_allclose(np.degrees(clip.swing.angle), [0.0, 12.0, -9.0, 4.0])
+    assert clip.swing.corners.sum() == len(clip.surface[0]) - 8
+    assert not clip.swing.corners[:8].any()
+    assert not any("hinge" in note for note in clip.notes)
+
+
 def test_pictures_follow_the_angle() -> None:
     """At angle 0 the corners are those of the surface; at another the wing has turned about its edge, and the centre of
     mass of the whole has stayed where it was."""
@@ -94,3 +137,20 @@ def test_pictures_follow_the_angle() -> None:
     before, after = drawn[-8:] - edge, moved[-8:] + away - edge
     c, s = np.cos(0.5), np.sin(0.5)
     np.testing.assert_allclose(after, before @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]]), atol=1e-12)
+
+
+@pytest.mark.parametrize(("angle", "depth"), [(0.5, 0.05), (0.0, 0.0), (-0.5, 0.0)])
+def test_how_deep_a_node_lies_is_judged_at_the_angle(angle: float, depth: float) -> None:
+    """A node in the middle of the wing as it is at 0.5 rad is half its thickness deep then, and else out of it."""
+    main = load(NAME).phases[0].main
+    values = {**main.values, **main.made}
+    swing = build.target_swing(values, main.terms)
+    assert swing is not None
+    middle = swing(0.5)[-8:].mean(axis=0)
+    columns = {"time": np.zeros(1), "hinge.angle": np.array([angle])}
+    columns |= {f"target.position[{i}]": np.array([float(i)]) for i in (1, 2, 3)}
+    columns |= {f"target.attitude[{i}]": np.array([float(i == 1)]) for i in (1, 2, 3, 4)}
+    nodes = {0: np.array([middle + np.array([1.0, 2.0, 3.0])])}
+    evidence = Evidence(columns, values, main.terms, 1.0, nodes=nodes)
+    (found,) = capture_criteria._depth(evidence)
+    assert found.value == pytest.approx(depth, abs=1e-12)

@@ -91,6 +91,27 @@ def test_a_rope_runs_once_round_the_rim(rigged):
     np.testing.assert_allclose(graph.mass[rigged.rope], 1140.0 * area * lengths, rtol=1e-12)
 
 
+COUNTS = "strips", "node_slots", "net_nodes", "net_threads", "thread_numbers"
+
+
+def counts_of(layer, values):
+    """Before the net is laid out, and after."""
+    return [[int(record[name][0]) for name in COUNTS] for record in (layer.counted(values), layer.lay(values).record)]
+
+
+def test_laying_out_leaves_the_counts(rigged):
+    """Work memory is shared out by them: up to 0.17.0 the rope's and the leads' numbers of threads were lost."""
+    counted, laid = counts_of(rigged.layer, rigged.values)
+    assert laid == counted
+    assert laid[-1] >= len(rigged.laid.graph.ends)
+
+
+def test_laying_out_a_hexagon_leaves_the_counts():
+    layer = Layer("hexagon", bullets="6", edge="plain")
+    counted, laid = counts_of(layer, {"net.radius": 2.0, "net.mesh": 1.0} | SET["edge"])
+    assert laid == counted
+
+
 def test_a_strip_has_each_end_in_one_row(rigged):
     graph = rigged.laid.graph
     row = graph.ends // int(rigged.laid.p["row_pitch"])

@@ -348,9 +348,10 @@ def stretches_bent(net):
     return int((states[int(p["thread_numbers"]) :] == near.BENT).sum())
 
 
-def test_a_cord_that_bends_keeps_all_momenta_and_tells_what_it_loses_where_it_slides_off():
+@pytest.mark.parametrize("slack", [0, 1], ids=["taken in", "wound"])
+def test_a_cord_that_bends_keeps_all_momenta_and_tells_what_it_loses_where_it_slides_off(slack):
     terms = load("big-panel-wrapped").phases[0].main.terms  # other tests build an FMU of them
-    net = Instance(MODEL, terms, DRAWN_IN, NETTED).initialise()
+    net = Instance(MODEL, terms, DRAWN_IN | {"closing.slack": slack}, NETTED).initialise()
     linear, angular = net.array("momentum").copy(), net.array("angular_momentum").copy()
     most, shot = 0, 4.0 * 0.4 * 3.0
     net.step(3.5)

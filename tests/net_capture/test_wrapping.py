@@ -15,6 +15,7 @@ from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import U, X
 from fmu_src.net_capture.refusal import Scene
 from fmu_src.net_capture.shapes import box, cylinder, frustum, sphere
+from fmu_src.net_capture.wrap_rows import OF_UNIONS
 from orbital.kernel import kernel
 from tests.net_capture.on_target import Kernels
 from tests.validation import closed_form, other_code
@@ -347,6 +348,18 @@ def test_nodes_swing_round_two_edges_of_a_panel(kernels):
     assert scene.p["wrap_passed"] == 0
     assert 0.5 * (scene.planes[U : U + 3, :2] ** 2).sum() == pytest.approx(1.0, abs=4e-4)
     assert (scene.planes[U, :2] > 0.5).all()
+
+
+@pytest.mark.parametrize("bends", ["plain", "friction"])
+def test_round_one_body_there_is_nothing_of_visits(bends):
+    """What ways among several bodies scribble on, 12 kB, stands in the record of a union alone."""
+    one, several = (MODEL.interface(BOX | {"wrap": bends, "target": shape}) for shape in ("box", "union"))
+    names = {v.name for v in one.variables}
+    assert names.isdisjoint(v.name for v in OF_UNIONS)
+    assert not any(name.startswith(("visit", "joint")) for name in names)
+    assert {v.name for v in several.variables} > {v.name for v in OF_UNIONS}
+    numbers = sum(v.size for v in OF_UNIONS)
+    assert several.make_record().nbytes - one.make_record().nbytes >= 8 * numbers > 12000
 
 
 def test_what_no_thread_bends_with_is_refused():

@@ -105,6 +105,8 @@ UNION = """capture.target={shape="union", start_rate=["0 deg/s", "1 deg/s", "1 d
 {shape="frustum", radius_bottom="0.5 m", radius_top="0.2 m", length="0.5 m", mass="9 kg",
 position=["0 m", "0.8 m", "0 m"]},
 {shape="sphere", radius="0.3 m", mass="5 kg", position=["0.7 m", "0 m", "0 m"]}]}""".replace("\n", "")
+HINGED = UNION.replace('position=["0 m", "0 m", "1 m"]', 'position=["0 m", "0 m", "1 m"], hinged=true')
+HINGE = 'capture.hinge={position=["0 m", "0 m", "0.6 m"], stiffness="5 N m/rad", start_rate="40 deg/s"}'
 HEXAGON, RADIAL = (f'capture.net={{shape="{shape}", radius="3 m", mesh="0.5 m"}}' for shape in ("hexagon", "radial"))
 INELASTIC, PENALTY = "capture.contact.law=inelastic", "capture.contact.law=penalty"
 WINCHES = 'capture.closing={drive="winches", time="2.2 s", rings=3}'
@@ -150,6 +152,9 @@ SHOTS: dict[str, tuple[str, ...]] = {
                'capture.tether={state="slack", length="7 m"}', *EVERY, "capture.volume={}", QUALITY),
     "breaks, falling": ("capture.break.strength=60 N", SINGLE, EJECTED, CYLINDER, INELASTIC, SPRINGS, FALLING),
     "mesh": (SPIN, MESH, INELASTIC, FALLING, SPRINGS, TOUCHING, QUALITY_TOLD, "capture.volume={}"),
+    "hinged": (HINGED, HINGE, PENALTY, FOLLOWING, HILL, "capture.gravity_gradient={}", WINCHES, SLACK, QUALITY_TOLD,
+               "capture.volume={}", *EVERY),
+    "hinged, held": (HINGED, HINGE, INELASTIC, SPRINGS, DRAGGING, PULL, SINGLE, "capture.nodes={}"),
     "wrap": (UNION, INELASTIC, RUBBING, WINCHES, KNOTS, SLACK, PULL),
     "wrap, following": (UNION, PENALTY, "capture.wrap={}", EDGE, FOLLOWING, "capture.force_map={}", SPRINGS,
                         QUALITY_TOLD),

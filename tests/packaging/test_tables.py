@@ -15,6 +15,7 @@ import pytest
 from fmu_src import tables
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
+from fmu_src.interface import Variable
 from fmu_src.packaging import start_values, table_file
 from fmu_src.tables import Table
 from tests.packaging import lookup
@@ -179,6 +180,17 @@ def test_a_table_beside_a_term_of_another_part_is_there_with_it_alone():
     assert table_file.content(alone.with_tables(knots)) == table_file.content(plain.with_tables(knots))
     with pytest.raises(ValueError, match=r"table spans: a scene gives it, it cannot hang on the choice of box"):
         Table("spans", "1", "given", beside=("box", "grid"))
+
+
+def test_a_row_beside_a_term_of_another_part_is_there_with_it_alone():
+    twice = Variable("curve_twice[#]", "1", "state", "room", shape=(4,), beside=("box", "grid"))
+    part = MODEL.groups["curve"].terms["linear"]
+    curve = replace(MODEL.groups["curve"], terms={"linear": replace(part, variables=(*part.variables, twice))})
+    made = replace(MODEL, groups={**MODEL.groups, "curve": curve})
+    assert twice in made.interface(BOTH).variables
+    assert made.interface(CURVE_ALONE).variables == MODEL.interface(CURVE_ALONE).variables
+    with pytest.raises(ValueError, match=r"curve\.knot: a tool sees it, it cannot hang on the choice of box"):
+        Variable("curve.knot", "1", "output", "seen", beside=("box", "grid"))
 
 
 def test_what_is_given_is_kept_as_it_was():

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
+from dcone_cosim import build
 from dcone_cosim.findings import spoken
+from dcone_cosim.loading import load
+from dcone_cosim.report import packing
 from dcone_cosim.report.page import colours, of_folder
+from dcone_cosim.scenery import Clip, Swing
 from tests.report.browser import Browser, chromium
 
 WIDE, NARROW = 1280, 390
@@ -45,6 +52,41 @@ def test_nothing_goes_wrong_and_nothing_moves_by_itself(browser: Browser) -> Non
     assert browser.ask("window.dcone.replays.capture.playing") is False
 
 
+def test_a_part_that_swings_is_where_its_hinge_puts_it(browser: Browser) -> None:
+    """Corners of body and wing as the page's own objects have them at an angle, and at another one, against the
+    formula's; `rest` and `part` are drawn apart."""
+    main = load("hinged-panel").phases[0].main
+    values = {**main.values, **main.made}
+    surface, swing = build.target_surface(values, main.terms), build.target_swing(values, main.terms)
+    hinge = build.target_hinge(values, main.terms)
+    assert surface is not None
+    assert swing is not None
+    assert hinge is not None
+    angles = np.array([0.6, -0.4])
+    still, at = np.zeros((2, 3)), np.array([[1.0, 2.0, 3.0], [3.0, 1.0, 2.0]])
+    attitude = Rotation.from_rotvec([[0.3, -0.2, 0.5], [-0.7, 0.4, 0.1]])
+    shown = (np.array(surface[0]), [list(face) for face in surface[1]])
+    one = Clip("capture", "", "", np.array([0.0, 1.0]), still, at, attitude.as_quat(scalar_first=True), shown)
+    packed = packing.clip(replace(one, swing=Swing(angles, **hinge)))
+    begun = (
+        "(async () => { const { Bodies } = await import('dcone/bodies'); const THREE = await import('three');"
+        f" const b = new Bodies({json.dumps(packed)}, null, new THREE.Scene()), {{ rest, part }} = b.swing;"
+    )
+    for frame, angle in enumerate(angles):
+        told = browser.ask(
+            f"{begun} b.show({frame}); b.body.updateMatrixWorld(true);"
+            " return b.clip.surface.corners.map(([r, a, c], n) => (b.clip.swing.corners[n] ? part : rest)"
+            ".localToWorld(new THREE.Vector3(a, r, -c)).toArray()); })()"
+        )
+        wanted = at[frame] + attitude[frame].apply(swing(float(angle)))
+        np.testing.assert_allclose(told, wanted[:, [1, 0, 2]] * [1.0, 1.0, -1.0], atol=1e-6)
+    faces = browser.ask(
+        f"{begun} return [rest, part].map((one) => one.children[0].geometry.attributes.position.count / 3); }})()"
+    )
+    assert sum(faces) == sum(len(face) - 2 for face in surface[1])
+    assert faces[0] == 12
+
+
 def test_threads_have_the_colour_of_their_tension(browser: Browser, kept: Path) -> None:
     """Tone and colour of the page's own objects, against the table and matplotlib's map."""
     threads = pd.read_parquet(kept / "replay_threads.parquet")
@@ -71,8 +113,6 @@ def test_a_turning_body_and_its_net_are_in_one_frame(browser: Browser, kept: Pat
         " const c = b.clip.surface.corners[0]; const v = b.ship.position.clone().set(c[1], c[0], -c[2]);"
         " return [...b.body.localToWorld(v).toArray(), c]; })()"
     )
-    from scipy.spatial.transform import Rotation
-
     last = rows.iloc[-1]
     turn = Rotation.from_quat([last[f"target.attitude[{i}]"] for i in range(1, 5)], scalar_first=True)
     radial, along, cross = turn.apply(told[3]) + [last[f"target.position[{i}]"] for i in (1, 2, 3)]

@@ -9,9 +9,12 @@ const HELD = [0.79, 0.63, 0.37, 0.9];
 const CORD = [0.9, 0.6, 0.85, 1];
 const COLOURS = { target: 0xc9a15f, chaser: 0x6fb1e8, bullet: 0xf0f0f0, edge: 0x2a2115 };
 
+/** A place or direction of ours, (radial, along, cross), in the page's axes. */
+const turned = ([radial, along, cross]) => new THREE.Vector3(along, radial, -cross);
+
 /** A closed surface of flat faces, each a polygon of corners in body axes (radial, along, cross at no turn). */
 function solid({ corners, faces }) {
-  const place = (n) => new THREE.Vector3(corners[n][1], corners[n][0], -corners[n][2]);
+  const place = (n) => turned(corners[n]);
   const points = [], edges = [];
   for (const face of faces) {
     const around = face.map(place);
@@ -29,6 +32,24 @@ function solid({ corners, faces }) {
 
 const ball = (radius, color) => new THREE.Mesh(new THREE.SphereGeometry(radius, 20, 14), new THREE.MeshLambertMaterial({ color }));
 
+/** A body whose part swings: the faces at rest, and those of the part about their hinge. */
+class Hinged {
+  constructor({ corners, faces }, swing) {
+    const [rest, part] = [false, true].map((side) => faces.filter((face) => swing.corners[face[0]] === side));
+    [this.hinge, this.axis, this.lag] = [swing.hinge, swing.axis, swing.lag].map(turned);
+    [this.rest, this.part] = [rest, part].map((some) => solid({ corners, faces: some }));
+    this.object = new THREE.Group().add(this.rest, this.part);
+  }
+
+  /** At an angle [rad]; the body's own place is that of the common centre of mass, which the part takes along. */
+  at(angle) {
+    this.part.quaternion.setFromAxisAngle(this.axis, angle);
+    const shift = this.lag.clone().applyQuaternion(this.part.quaternion).sub(this.lag);
+    this.rest.position.copy(shift).negate();
+    this.part.position.copy(this.hinge).applyQuaternion(this.part.quaternion).negate().add(this.hinge).sub(shift);
+  }
+}
+
 /** Of a chaser that would be too small to be seen, over the radius of a ball. */
 const LARGER = 2.5;
 
@@ -39,6 +60,7 @@ export class Bodies {
     this.chaser = new Places(clip.chaser);
     for (const name of ["target", "line", "bullets"]) this[name] = clip[name] ? new Places(clip[name]) : null;
     this.attitude = clip.attitude ? unpack(clip.attitude.values ?? clip.attitude) : null;
+    this.angle = clip.angle ? unpack(clip.angle.values ?? clip.angle) : null;
     this.tension = clip.tension ? new Tensions(clip.tension) : null;
     this.box = clip.box ?? this.bounds();
     const size = 0.012 * this.reach();
@@ -46,7 +68,8 @@ export class Bodies {
     this.ship.scale.setScalar(Math.max(1, LARGER * size));
     scene.add(this.ship);
     if (this.target) {
-      this.body = clip.surface ? solid(clip.surface) : ball(2.2 * size, COLOURS.target);
+      this.swing = clip.surface && clip.swing ? new Hinged(clip.surface, clip.swing) : null;
+      this.body = this.swing?.object ?? (clip.surface ? solid(clip.surface) : ball(2.2 * size, COLOURS.target));
       if (clip.forces) this.press(clip.forces, colours.image.data);
       scene.add(this.body);
     }
@@ -129,6 +152,7 @@ export class Bodies {
       const [w, a, b, c] = this.attitude.subarray(4 * frame, 4 * frame + 4);
       this.body.quaternion.set(b, a, -c, w);
     }
+    if (this.swing && this.angle) this.swing.at(this.angle[frame]);
     const shots = this.bullets?.at(frame);
     this.shots.forEach((one, i) => one.position.fromArray(shots, 3 * i));
     if (this.tether) {

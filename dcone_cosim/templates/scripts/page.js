@@ -27,7 +27,7 @@ async function shoot() {
   const { ShotView } = await import("dcone/shot");
   const own = window.dcone.replays[data.shot.phase], clip = data.clips.find((one) => one.key === data.shot.phase);
   if (!own) throw new Error("it needs WebGL, and the replay has none");
-  window.dcone.shot = new ShotView(document.getElementById("live-shot"), data.shot, data.colours, own.bodies.box, clip.surface);
+  window.dcone.shot = new ShotView(document.getElementById("live-shot"), data.shot, data.colours, own.bodies.box, clip.surface, clip.swing);
 }
 
 const ready = () => {

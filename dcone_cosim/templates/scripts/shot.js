@@ -7,13 +7,13 @@ import { Replay } from "dcone/replay";
 const LARGEST = 255;
 
 export class ShotView extends Panel {
-  /** `box` is what the run's own replay shows, `surface` its target. */
-  constructor(root, told, colours, box, surface) {
+  /** `box` is what the run's own replay shows, `surface` its target, of which a part may `swing`. */
+  constructor(root, told, colours, box, surface, swing) {
     super(root, told, "shot", ["button"]);
     this.button.addEventListener("click", () => this.shoot());
     this.over = null;
     [this.held, this.most, this.took, this.failed] = [0, 0, 0, ""];
-    this.replay = new Replay(root.querySelector(".replay"), this.clip(box, surface), colours);
+    this.replay = new Replay(root.querySelector(".replay"), this.clip(box, surface, swing), colours);
     this.replay.grow(1, false);
     this.replay.go(0);
     this.tell();
@@ -21,12 +21,12 @@ export class ShotView extends Panel {
   }
 
   /** Room for every frame that the shot may have. */
-  clip(box, surface) {
+  clip(box, surface, swing) {
     const { plan, bodies, ends, rim, most, floor } = this.told;
     const room = Math.ceil(plan.duration / plan.every) + 2;
     const places = (count) => ({ values: new Float32Array(3 * count * room), shape: [room, count, 3] });
-    const found = { key: "shot", title: "Shot", clock: "since the shot", times: Float64Array.from({ length: room }, (_, n) => Math.min(n * plan.every, plan.duration)), marks: [], notes: [], box, surface };
-    for (const [name, count] of Object.entries(bodies)) found[name] = name === "attitude" ? { values: new Float32Array(4 * room) } : places(count / 3);
+    const found = { key: "shot", title: "Shot", clock: "since the shot", times: Float64Array.from({ length: room }, (_, n) => Math.min(n * plan.every, plan.duration)), marks: [], notes: [], box, surface, swing };
+    for (const [name, count] of Object.entries(bodies)) found[name] = ["attitude", "angle"].includes(name) ? { values: new Float32Array(count * room) } : places(count / 3);
     found.net = { nodes: places(plan.nodes.length / 3), threads: unpack(ends), rim };
     if (plan.threads.length && most > 0) found.net.tensions = { codes: new Uint8Array(plan.threads.length * room), shape: [room, plan.threads.length], most, floor };
     if (found.attitude) for (let n = 0; n < room; n++) found.attitude.values[4 * n] = 1;

@@ -94,6 +94,31 @@ def _table(content: bytes, shape: tuple[int, int], place: bytes, axis: bytes, li
     return table
 
 
+def swung(values: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
+    """Which corners of the pieces swing, in the order in which they are drawn (n,).
+
+    Checked  tests/net_capture/test_hinged_contact.py, tests/report/test_swing.py
+    """
+    table, found = values[at.BODY], list(in_body_axes(values[PIECES]))
+    numbers = [len(of.drawn(piece)[0]) for piece in found]
+    return np.repeat(table[at.PIECES : at.PIECES + len(found)] != 0.0, numbers)
+
+
+def pieces_at(values: Mapping[str, Any], angle: float) -> Array:
+    """The table of the pieces at an angle, body axes, from the centre of mass as it is then (n, WORDS).
+
+    Checked  tests/net_capture/test_hinged_contact.py
+    """
+    table, rows = values[at.BODY], np.array(values[PIECES])
+    hinge, turn = table[at.HINGE : at.AXIS], turn_about(table[at.AXIS : at.ARM], angle)
+    for row, swings in zip(rows, table[at.PIECES : at.PIECES + len(rows)], strict=True):
+        if swings:
+            row[5:8] = hinge + turn @ (row[5:8] - hinge)
+            row[8:17] = (turn @ row[8:17].reshape(3, 3)).ravel()
+    rows[:, 5:8] -= table[at.SHARE] * (turn - np.eye(3)) @ table[at.ARM : at.REST]
+    return rows
+
+
 def corners_at(values: Mapping[str, Any], angle: float) -> Array:
     """Corners of the pieces (n, 3) [m], in the order in which they are drawn, at an angle; body axes, from the centre
     of mass as it is then.
@@ -103,11 +128,29 @@ def corners_at(values: Mapping[str, Any], angle: float) -> Array:
     table = values[at.BODY]
     hinge, turn = table[at.HINGE : at.AXIS], turn_about(table[at.AXIS : at.ARM], angle)
     shift = table[at.SHARE] * (turn - np.eye(3)) @ table[at.ARM : at.REST]
-    found = []
-    for number, piece in enumerate(in_body_axes(values[PIECES])):
-        corners = np.array(of.drawn(piece)[0])
-        found.append(hinge + (corners - hinge) @ turn.T if table[at.PIECES + number] else corners)
-    return np.asarray(np.vstack(found) - shift)
+    corners = np.vstack([of.drawn(piece)[0] for piece in in_body_axes(values[PIECES])])
+    moved = np.where(swung(values)[:, None], hinge + (corners - hinge) @ turn.T, corners)
+    return np.asarray(moved - shift)
+
+
+def held_at(values: Mapping[str, Any], angle: float) -> dict[str, Array]:
+    """The appendage at an angle of its hinge, body axes, places from the centre of mass of the whole as it is then:
+    `mass` [kg] (1,), `inertia` about its own centre of mass [kg m2] (3, 3), `center` of its mass, `hinge`, a point of
+    the axis [m] (3,), and `axis` (3,).
+
+    Checked  tests/cosim/test_hinge_handed_over.py
+    """
+    table, mass = values[at.BODY], float(values["target.mass"])
+    turn, arm = turn_about(table[at.AXIS : at.ARM], angle), table[at.ARM : at.REST]
+    hinge = table[at.HINGE : at.AXIS] - table[at.SHARE] * (turn @ arm - arm)
+    inertia = mass * turn @ table[at.INERTIA : at.LIMIT].reshape(3, 3) @ turn.T
+    return {
+        "mass": mass * table[at.SHARE : at.SHARE + 1],
+        "inertia": inertia,
+        "center": hinge + turn @ arm,
+        "hinge": hinge,
+        "axis": table[at.AXIS : at.ARM],
+    }
 
 
 def rows(values: Mapping[str, Any]) -> Iterator[Implied]:
@@ -144,6 +187,19 @@ def matrix(table: Array, angle: float) -> tuple[Array, Array]:
     return found, s
 
 
+def lightest(table: Array) -> float:
+    """Least moment that the hinge feels within its limit, the target free, over the mass of the whole [m2].
+
+    Checked  tests/net_capture/test_hinge_extremes.py
+    """
+    return min(1.0 / float(np.linalg.inv(matrix(table, angle)[0])[3, 3]) for angle in _angles(table[at.LIMIT]))
+
+
+def _angles(limit: float) -> Array:
+    """From beyond the limit on one side to beyond that on the other [rad]."""
+    return np.linspace(-limit - BEYOND, limit + BEYOND, ANGLES)
+
+
 def _reach(
     table: Array, whole: solids.Solid, found: list[of.Piece], swings: npt.NDArray[np.bool_], limit: float
 ) -> None:
@@ -156,7 +212,7 @@ def _reach(
     )  # fmt: skip
     half, radius, reach, yields = np.zeros(3), 0.0, 0.0, 0.0
     girths = []
-    for number, angle in enumerate(np.linspace(-limit - BEYOND, limit + BEYOND, ANGLES)):
+    for number, angle in enumerate(_angles(limit)):
         turn = turn_about(axis, angle)
         masses, slope = matrix(table, angle)
         light = np.linalg.inv(masses)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
-from fmu_src.net_capture.appendage.laying import lay
+from fmu_src.net_capture.appendage.laying import lay, lightest
+from fmu_src.net_capture.hinge.motion import FASTEST, TOO_FAST
 from fmu_src.net_capture.hinge.numbers import BODY, MOST_PIECES
 from fmu_src.net_capture.hinge.numbers import LIMIT as AT_LIMIT
 from fmu_src.net_capture.refusal import Refusal, Scene, text
@@ -51,7 +53,9 @@ ROWS = (
     state("hinge_recoil[#]", "m", "way of that centre in the body axes per radian", shape=(3,)),
     state("hinge_gain[#]", "1/(kg.m)", "rates that an impulse gives", shape=(4,)),
     state("hinge_lever", "m", "way of the point touched along the impulse, per radian"),
-    count("hinge_touched", "whether the point of the surface found last belongs to the appendage", "state"),
+    count("hinge_touched", "whether the point of the surface found last is the appendage's; -1: not asked", "state"),
+    state("hinge_gap", "m", "distance of the point asked of last"),
+    state("hinge_found[#][#]", "1", "normal of the surface there, and that point [m], body axes", shape=(2, 3)),
     state("hinge_point[#]", "m", "point touched, from the centre of mass, body axes", shape=(3,)),
     state("hinge_local[#]", "1", "direction of an impulse, body axes", shape=(3,)),
     state("hinge_moved[#]", "m/s", "velocity of a point by the swing, frame axes", shape=(3,)),
@@ -68,8 +72,21 @@ ASKED = (
 )  # fmt: skip
 
 
+EXTREMES = (
+    Extreme("hinge spring of 1e9 N m/rad", "the appendage is all but rigid, its spring thousands of times as fast as "
+            "the net", "energy_gained", {"hinge.stiffness": 1e9}, chief=True),
+    Extreme("hinge dashpot of 1e4 N m s/rad", "the appendage creeps", "energy_gained", {"hinge.damping": 1e4}),
+    Extreme("hinge dashpot beyond what is followed", "it would take no end of steps", "finite",
+            {"hinge.damping": 1e12}),
+    Extreme("hinge without spring and dashpot", "nothing holds the appendage but its stops", "energy_gained",
+            {"hinge.stiffness": 0.0, "hinge.damping": 0.0}),
+    Extreme("hinge at 180 deg/s", "the appendage strikes its stop, and the net faster than that flies",
+            "energy_gained", {"hinge.start_rate": math.pi}, chief=True),
+)  # fmt: skip
+
+
 def refuses(scene: Scene) -> Iterator[Refusal]:
-    """Moments that the two bodies have not, a map of forces, and a start beyond the stops."""
+    """Moments that the two bodies have not, a start beyond the stops, and a hinge faster than can be followed."""
     told = scene.vector("target.principal_inertia")
     if any(told):
         expected = "must be left out: with [capture.hinge] they follow from the pieces of both bodies"
@@ -81,6 +98,18 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     if abs(start) > limit:
         expected = f"must be within hinge.limit, {math.degrees(limit):.4g} deg"
         yield Refusal("hinge.start_angle", f"{math.degrees(start):.4g} deg", expected)
+    if BODY in scene.values:
+        moment = float(scene.values["target.mass"]) * lightest(scene.values[BODY])
+        for name, unit, most in (
+            ("stiffness", "N m/rad", FASTEST**2 * moment),
+            ("damping", "N m s/rad", FASTEST * moment),
+        ):
+            if (given := float(scene.values[f"hinge.{name}"])) > most:
+                expected = (
+                    f"must be at most {most:.3g} {unit}: on {moment:.3g} kg m2, what the hinge feels at least, it is "
+                    f"faster than {FASTEST:g} 1/s (leave [capture.hinge] out for a rigid target)"
+                )
+                yield Refusal(f"hinge.{name}", f"{given:.6g} {unit}", expected)
 
 
 PART = Term(
@@ -92,6 +121,8 @@ PART = Term(
     tables=(Table(BODY, "1", "masses of both bodies, the hinge, what holds at any angle, and what belongs to which"),),
     asked=ASKED,
     lay=lay,
+    faults=(TOO_FAST,),
     make=lambda composition: None,
     refuses=refuses,
+    extremes=EXTREMES,
 )

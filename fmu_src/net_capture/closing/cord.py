@@ -21,7 +21,7 @@ class Cord(NamedTuple):
     pieces(p, work, i)               pieces of thread on the rim between the two [1]
     rouse(p, work)                   all nodes that it draws stand where they are now, and are kicked in this substep
     meet(p, work, i, slack)          how it lies round the target now, once in a substep; by how much it is shorter at
-                                     once [m], see `CordBends`; None where it stays straight
+                                     once, less than 0: longer [m], see `CordBends`; None where it stays straight
     along, along_shown (p, work, i)  its way [m] and the rate of that [m/s], now and of what is shown
     draw, draw_shown (p, work, i, tension)   the same tension in every stretch: rings have no friction
     burden(p, work, i, stiffness, dashpot, tension, span)   what it brings to its knots; None where no pace asks
@@ -88,9 +88,10 @@ def make_cord(composition: Any) -> Cord:
 
     @kernel
     def meet_target(p, work, i, slack):
-        """How the i-th pair's cord lies round the target now; by how much it is shorter at once [m].
+        """How the i-th pair's cord lies round the target now; by how much it is shorter at once [m], less
+        than 0: longer.
 
-        Checked  tests/net_capture/test_union_wrapping.py
+        Checked  tests/net_capture/test_union_wrapping.py, tests/net_capture/test_slip_loss.py
         """
         fallen = 0.0
         for stop in range(stops(p)):

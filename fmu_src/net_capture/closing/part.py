@@ -13,6 +13,9 @@ from fmu_src.rows import at_least_zero, choice, count, output, parameter, peak, 
 
 FASTEST = 100.0
 """Speed of a reel [m/s] up to which what it winds in a substep is little beside its cord."""
+SLACK = ("taken_in", "wound")
+"""What becomes of the cord that is loose as the reels start."""
+TAKEN_IN, WOUND = range(2)
 
 
 def rows(reels: str) -> tuple[Variable, ...]:
@@ -28,6 +31,12 @@ def rows(reels: str) -> tuple[Variable, ...]:
         ),
         parameter("closing.distance", "m", f"that starts the {reels}, for trigger distance", 0.0),
         at_least_zero("closing.delay", "s", f"from the trigger to the start of the {reels}", 0.0),
+        choice(
+            "closing.slack",
+            f"how the {reels} take what is loose of the cord as they start: at once, whatever their speed, or at their "
+            "speed without load, as all other cord, so that it pulls once it is taut",
+            SLACK,
+        ),
         parameter(
             "closing.rings",
             "1",

@@ -7,6 +7,9 @@ Each reel runs at its no-load speed less the share of the tension in the force a
 A reel that pays out does so at most until its cord is as long as the mouth's side. None winds its pair shorter than the
 lock length and a locked one never turns again, so no cord is stiffer than the stability bound reckons with.
 
+What is loose of a cord as the reels start is taken in at once, whatever v0 (`closing.slack = "taken_in"`), or wound by
+the same law at no tension, with v0 (`"wound"`).
+
 The book of the cord, T_e = EA (s - L)/L the elastic part of its tension T:
 
     by the reels     [T + T_e^2 / (2 EA)] (-dL)        by the trapezoidal rule over the substep
@@ -21,6 +24,7 @@ from typing import Any, NamedTuple
 from fmu_src.interface import fault
 from fmu_src.net_capture.closing import Closing
 from fmu_src.net_capture.closing.cord import make_cord
+from fmu_src.net_capture.closing.part import WOUND
 from fmu_src.net_capture.closing.triggers import TRIGGER_CONTACT, TRIGGER_DISTANCE, TRIGGER_TIME
 from fmu_src.net_capture.formulas import BREAKING_STRAIN, cord_damping, cord_stiffness
 from orbital.kernel import kernel
@@ -252,11 +256,11 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
     @kernel
     def trigger(p, work, now, touched, reached):
         """Start the reels when their trigger has fallen and its delay has passed; what is loose of the cord is taken
-        in, but by a reel that has jammed.
+        in, if at once, but by a reel that has jammed.
 
-        A pair that stands closer than the lock length has its cord slack, at that length.
+        A pair that stands closer than the lock length has its cord slack, at that length. None begins stretched.
 
-        Checked  tests/net_capture/test_closing.py
+        Checked  tests/net_capture/test_closing.py, tests/net_capture/test_slack_cord.py
         """
         if p.trigger_time < 0.0 and (
             p.close_command != 0
@@ -273,10 +277,10 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
                 if bends:
                     meet(p, work, i, True)
                 top = top_speed(p, i)
-                if top > 0.0:
-                    distance, rate = along_shown(p, work, i)
-                    p.cord_length[i] = max(distance, p.closing_lock_length)
-                    _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i], p.cord_most[i], top)
+                distance, rate = along_shown(p, work, i)
+                keeps_slack = top == 0.0 or p.closing_slack == WOUND
+                p.cord_length[i] = max(distance, p.cord_length[i] if keeps_slack else p.closing_lock_length)
+                _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i], p.cord_most[i], top)
 
     @kernel
     def wind(p, work):
@@ -291,7 +295,7 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
         for i in range(p.net_corners):
             if bends:
                 fallen = meet(p, work, i, False)
-                if fallen > 0.0:
+                if fallen != 0.0:
                     distance, _ = along_now(p, work, i)
                     p.wrap_slip_loss += cord_energy(p, distance + fallen, p.cord_length[i])
                     p.wrap_slip_loss -= cord_energy(p, distance, p.cord_length[i])

@@ -111,7 +111,7 @@ PART = Term(
         positive("closing.force_limit", "N", "largest force of a spring", 20.0),
         choice("closing.pulled", "what a reel does under a tension above its spring's force", PULLED),
         output("closing.spring_energy", "J", "left in the springs, until all pairs are locked"),
-        output("closing.braked", "J", "taken by the reels' brakes, and by slack that was taken in"),
+        output("closing.braked", "J", "taken by the reels' brakes, and what the springs gave to slack cord"),
         state("spring_full", "J", "in the springs before they start"),
     ),
     faults=(TOO_MANY_RINGS,),

@@ -38,8 +38,8 @@ def make(composition: Any) -> Contact:
     add_to_map = composition.force_map.add if has_map else None
     hinge = composition.target.hinge
     swings = hinge is not None
-    swing, along, feel_both, push_both = (
-        (hinge.swing, hinge.along, hinge.feel, hinge.push) if hinge is not None else [None] * 4
+    swing, along, feel_both, push_both, reach = (
+        (hinge.swing, hinge.along, hinge.feel, hinge.push, hinge.reach) if hinge is not None else [None] * 5
     )
 
     @kernel
@@ -109,6 +109,8 @@ def make(composition: Any) -> Contact:
         own = normal[0] * u[node] + normal[1] * v[node] + normal[2] * w[node]
         approach = own - dot(normal, p.target_drift) - dot(lever, p.target_omega)
         if swings:
+            if not ended and gap >= h * (abs(approach) + (reach(p) + gap) * abs(p.hinge_speed)):
+                return 0  # whichever body it is near
             approach -= along(p, body, local) * p.hinge_speed
         if ended:
             gap -= h * approach

@@ -106,6 +106,27 @@ def take_rates(p, attitude, momentum):
 
 
 @kernel
+def find_lean(p, body, up):
+    """Moment of a central field on the hinge over 3 mu/r^3 [kg m2], at the angle that `assemble` was last told.
+
+        V = (3/2) mu/r^3 (u.I u - tr I/3),   I = I1 + R I2 R' + m (r.r 1 - r r')
+        -dV/dq = -3 mu/r^3 (u.(e x I2 u) + m (r.s/3 - (u.r)(u.s)))
+
+    up            u      from the middle of the field to the centre of mass, body axes   [-]   (3,)
+    m             the reduced mass of both bodies; r, s, e, I2 as in `motion`
+
+    Valid    bodies much smaller than r
+    Source   derivative of the potential of Hughes, Spacecraft Attitude Dynamics (1986), section 8.1
+    Checked  tests/net_capture/test_hinged_gradient.py
+    """
+    arm, slope, moving, turning = p.hinge_room[0], p.hinge_room[1], p.hinge_room[2], p.hinge_room[3]
+    times(moving, p.hinge_own, up)
+    cross(turning, body[AXIS : AXIS + 3], moving)
+    reduced = p.target_mass * body[SHARE] * (1.0 - body[SHARE])
+    return -dot(up, turning) - reduced * (dot(arm, slope) / 3.0 - dot(up, arm) * dot(up, slope))
+
+
+@kernel
 def derive(p, body, y, out):
     """out = rates of what is integrated, (9,), see `NUMBER`; those of now are left in `hinge_rates`.
 

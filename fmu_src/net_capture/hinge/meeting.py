@@ -22,8 +22,11 @@ class Meeting(NamedTuple):
     along_body: Any
 
 
-def make_meeting(composition: Any) -> Meeting:
-    """Kernels for the composition's target."""
+def make_meeting(composition: Any, touched: Any) -> Meeting:
+    """Kernels for the composition's target.
+
+    touched    kernel: whether the point of the surface found last belongs to the appendage
+    """
     body_of = composition.table(BODY)
 
     @kernel
@@ -50,7 +53,7 @@ def make_meeting(composition: Any) -> Meeting:
         body, from_hinge = body_of(p), p.hinge_room[5]
         for i in range(3):
             out[i] = 0.0
-        if p.hinge_touched != 0:
+        if touched(p):
             for i in range(3):
                 from_hinge[i] = point[i] + p.hinge_shift[i] - body[HINGE + i]
             cross(out, body[AXIS : AXIS + 3], from_hinge)
@@ -116,7 +119,7 @@ def make_meeting(composition: Any) -> Meeting:
 
         Checked  tests/net_capture/test_hinged_contact.py
         """
-        if p.hinge_touched != 0:
+        if touched(p):
             turned(vector, body_of(p)[AXIS : AXIS + 3], p.hinge_now[4], -p.hinge_now[5], vector)
 
     @kernel
@@ -125,7 +128,7 @@ def make_meeting(composition: Any) -> Meeting:
 
         Checked  tests/net_capture/test_hinged_contact.py
         """
-        if p.hinge_touched != 0:
+        if touched(p):
             turned(vector, body_of(p)[AXIS : AXIS + 3], p.hinge_now[4], p.hinge_now[5], vector)
 
     return Meeting(take, swing, along, feel, push, along_own, along_body)

@@ -31,7 +31,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from fmu_src.net_capture.hinge.matrix import NUMBER, assemble, derive, take_rates, times, turned
+from fmu_src.interface import fault
+from fmu_src.net_capture.hinge.matrix import NUMBER, assemble, derive, find_lean, take_rates, times, turned
 from fmu_src.net_capture.hinge.meeting import make_meeting
 from fmu_src.net_capture.hinge.numbers import (
     ARM,
@@ -54,6 +55,13 @@ from orbital.vectors import dot
 
 FINE = 0.1
 """Radians, or share of the dashpot's time, that an inner step is long at most."""
+FASTEST = 1e5
+"""Per second: fastest rate of spring or dashpot that is followed, a million inner steps for every second."""
+TOO_FAST = fault(
+    "hinge_too_fast",
+    "hinge.stiffness",
+    f"spring or dashpot of the hinge act within less than {1.0 / FASTEST:g} s on what they hold: their rate [1/s]",
+)
 RECOVERY = 1.0
 """Per second: speed over overshoot at which the hinge comes back to its stop, small against any that it had."""
 
@@ -61,7 +69,7 @@ RECOVERY = 1.0
 class Hinge(NamedTuple):
     """Kernels of a target with a hinge; all expect what `settle` has left.
 
-    place(p)                     to angle and rate of the start, with the rest's rate in `target_rate`
+    place(p) -> fault            to angle and rate of the start, with the rest's rate in `target_rate`
     drift(p, frame_rate, h)      turn both bodies by a substep with their momenta held
     measure(p)                   rates and energies from the momenta
     show(p, ahead)               angle and rate, a time on [s]
@@ -77,6 +85,8 @@ class Hinge(NamedTuple):
                                  back
     reach(p)                     largest way of a point per radian of the hinge [m]
     largest_share(p)             what an impulse gives at most where it acts, over what it gives the centre of mass [1]
+    lean(p, up, given)           give the hinge what a central field gives it; given is 3 mu/r^3 times a time [1/s], up
+                                 the way from the field's middle, body axes (3,)
     """
 
     place: Any
@@ -94,10 +104,15 @@ class Hinge(NamedTuple):
     along_body: Any
     reach: Any
     largest_share: Any
+    lean: Any
 
 
-def make_hinge(composition: Any) -> Hinge:
-    """Kernels for the composition's target."""
+def make_hinge(composition: Any, touched: Any) -> Hinge:
+    """Kernels for the composition's target.
+
+    touched    kernel of its shape: whether the point of the surface found last belongs to the appendage
+    """
+    too_fast = composition.code(TOO_FAST.name)
     body_of, pieces_of = composition.table(BODY), composition.table("target.pieces")
 
     @kernel
@@ -137,8 +152,18 @@ def make_hinge(composition: Any) -> Hinge:
                 moved[5 + i] -= p.hinge_shift[i]
 
     @kernel
+    def fastest(p):
+        """Rate of the spring or the dashpot, whichever is faster, on what the hinge feels now [1/s].
+
+        Checked  tests/net_capture/test_hinge_extremes.py
+        """
+        light = p.hinge_inverse[3, 3]
+        return max(math.sqrt(p.hinge_stiffness * light), p.hinge_damping * light)
+
+    @kernel
     def place(p):
-        """Put the hinge to its angle and rate of the start, and give the target the angular momentum of both bodies.
+        """Put the hinge to its angle and rate of the start, and give the target the angular momentum of both bodies; a
+        fault code or 0.
 
         Checked  tests/net_capture/test_hinge.py
         """
@@ -157,6 +182,11 @@ def make_hinge(composition: Any) -> Hinge:
         own = 1.0 / p.hinge_inverse[3, 3] + dot(p.hinge_coupling, p.hinge_eased)
         y[7] += own * p.hinge_start_rate
         settle(p)
+        rate = fastest(p)
+        if not rate <= (1.0 + 1e-9) * FASTEST:
+            p.fault_value = rate
+            return too_fast
+        return 0
 
     @kernel
     def advance(p, body, h):
@@ -211,10 +241,8 @@ def make_hinge(composition: Any) -> Hinge:
         for i in range(4):
             y[i] = p.target_pose[i]
         take_rates(p, p.target_pose, y[7])
-        light = p.hinge_inverse[3, 3]
-        fastest = max(math.sqrt(p.hinge_stiffness * light), p.hinge_damping * light)
         turning = math.sqrt(dot(p.hinge_rates[0:3], p.hinge_rates[0:3])) + abs(p.hinge_rates[3])
-        steps = 1 + int(h * max(fastest, turning) / FINE)
+        steps = 1 + int(h * max(fastest(p), turning) / FINE)
         for _ in range(steps):
             advance(p, body, h / steps)
         for i in range(4):
@@ -295,4 +323,13 @@ def make_hinge(composition: Any) -> Hinge:
         """
         return body_of(p)[YIELDS]
 
-    return Hinge(place, drift, measure, show, extent, follow, *make_meeting(composition), reach, largest_share)
+    @kernel
+    def lean(p, up, given):
+        """Give the hinge what a central field gives it, at the angle of now.
+
+        Checked  tests/net_capture/test_hinged_gradient.py
+        """
+        p.hinge_now[7] += given * find_lean(p, body_of(p), up)
+
+    meeting = make_meeting(composition, touched)
+    return Hinge(place, drift, measure, show, extent, follow, *meeting, reach, largest_share, lean)

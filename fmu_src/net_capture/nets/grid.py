@@ -239,7 +239,8 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                         found += 1
                         thread += lanes
                         j += lanes
-        p.thread_numbers = thread
+        if not write:  # rigged threads are counted behind them
+            p.thread_numbers = thread
         return found
 
     @kernel

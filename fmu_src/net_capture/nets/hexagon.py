@@ -179,7 +179,8 @@ def make(composition: Any) -> Net:
                         found += 1
                         thread += last + 1
                         j += reach
-        p.thread_numbers = thread
+        if not write:  # rigged threads are counted behind them
+            p.thread_numbers = thread
         return found
 
     @kernel

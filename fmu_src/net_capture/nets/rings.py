@@ -197,7 +197,8 @@ def make_rings(composition: Any, profile: Profile) -> Net:
                         found += 1
                         thread += reach - step + 1
                         j += reach
-        p.thread_numbers = thread
+        if not write:  # rigged threads are counted behind them
+            p.thread_numbers = thread
         return found
 
     @kernel

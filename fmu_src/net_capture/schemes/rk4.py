@@ -4,7 +4,8 @@
 
 Stable up to h |lambda| = 2 sqrt(2) on the imaginary axis, 2.785 on the real one, and 2.615 in any direction of the left
 half of the plane; four evaluations of all forces a substep, and no row sleeps. What it is for: a second opinion
-of the opening. An impulse within a step would spoil its order, so it goes without contact and closing.
+of the opening. An impulse within a step would spoil its order, so it goes without contact and closing. A target beside
+it, which nothing touches, turns to second order as with every scheme.
 
 Source   Kutta (1901); Hairer, Norsett and Wanner, Solving ordinary differential equations I (1993), table II.1.2
 Checked  tests/net_capture/test_order.py

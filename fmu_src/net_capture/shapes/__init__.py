@@ -39,6 +39,7 @@ class Shape(NamedTuple):
                                     has hollows
     hulls                           the convex bodies of which a shape with hollows is made, where threads bend;
                                     None: none
+    swings(p)                       whether the point of the surface found last belongs to an appendage that swings
     """
 
     samples: int
@@ -49,6 +50,7 @@ class Shape(NamedTuple):
     axes: Any = None
     faces: Any = None
     hulls: Hulls | None = None
+    swings: Any = None
 
 
 class Checks(NamedTuple):

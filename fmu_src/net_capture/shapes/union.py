@@ -22,6 +22,7 @@ from fmu_src.net_capture.shapes import pieces as of
 from fmu_src.net_capture.shapes.box import box_distance
 from fmu_src.net_capture.shapes.cylinder import cylinder_distance
 from fmu_src.net_capture.shapes.frustum import frustum_distance
+from fmu_src.net_capture.shapes.nearest import NOT_ASKED, make_touched
 from fmu_src.net_capture.shapes.shell import shell_distance
 from fmu_src.net_capture.shapes.sphere import sphere_distance
 from fmu_src.rows import state
@@ -153,36 +154,6 @@ def contact_distance(rows, room, normal, point):
     return found
 
 
-@kernel
-def of_swinging(rows, room, distance, normal, point):
-    """1 if the face that a point is nearest to is one of a piece that swings, else 0.
-
-    Where that face lies in the open the foot of the point lies on its piece.
-
-    rows         its pieces, and whether each swings             (n, 19)
-    room         for vectors                                     (6, 3)
-    distance     of the point, and the outward normal       [m]  (3,)
-    point        in body axes                               [m]  (3,)
-
-    Checked  tests/net_capture/test_hinge.py
-    """
-    own, local = room[0], room[1]
-    nearest = math.inf
-    swings = 0
-    for k in range(rows.shape[0]):
-        row = rows[k]
-        x = point[0] - distance * normal[0] - row[5]
-        y = point[1] - distance * normal[1] - row[6]
-        z = point[2] - distance * normal[2] - row[7]
-        for i in range(3):
-            local[i] = row[8 + i] * x + row[11 + i] * y + row[14 + i] * z
-        off = abs(piece_distance(row, own, local))
-        if off < nearest:
-            nearest = off
-            swings = 1 if row[WORDS] != 0.0 else 0
-    return swings
-
-
 def swinging(rows: np.ndarray) -> np.ndarray:
     """Which pieces a scene calls hinged, (n,)."""
     found: np.ndarray = rows[:, of.ROW] != 0.0 if rows.shape[1] > of.ROW else np.zeros(len(rows), dtype=bool)
@@ -211,18 +182,22 @@ def make(composition: Any) -> Shape:
 
     @kernel
     def distance_now(p, normal, point):
-        """The same of pieces some of which swing, as they are now; whether the nearest one does is noted.
+        """The same of pieces some of which swing, as they are now; what `touched` needs of it is noted, since that is
+        asked of few points.
 
         Checked  tests/net_capture/test_hinge.py
         """
-        rows = p.hinge_rows[0 : pieces_of(p).shape[0]]
-        found = contact_distance(rows, p.piece_room, normal, point)
-        p.hinge_touched = of_swinging(rows, p.piece_room, found, normal, point)
+        found = contact_distance(p.hinge_rows[0 : pieces_of(p).shape[0]], p.piece_room, normal, point)
+        p.hinge_touched = NOT_ASKED
+        p.hinge_gap = found
+        for i in range(3):
+            p.hinge_found[0, i] = normal[i]
+            p.hinge_found[1, i] = point[i]
         return found
 
-    if "hinge" in composition.terms:
-        distance = distance_now
     solid = samples.make_solid(composition, plain_distance)._replace(distance=distance)
+    if "hinge" in composition.terms:
+        return solid._replace(distance=distance_now, swings=make_touched(pieces_of, piece_distance))
     if "wrap" not in composition.terms:
         return solid
     return solid._replace(hulls=Hulls(composition.table(BODIES), composition.table(PLANES)))

@@ -1,0 +1,60 @@
+"""Which body of a union whose pieces swing the point of the surface found last belongs to."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from orbital.kernel import kernel
+
+NOT_ASKED = -1
+"""Of whether the piece found last swings."""
+
+
+def make_touched(pieces_of: Any, away: Any) -> Any:
+    """Kernel `touched(p)` of a union.
+
+    pieces_of    its table;  away   distance of a point from a piece
+    """
+
+    @kernel
+    def of_swinging(rows, room, distance, normal, point):
+        """1 if the face that a point is nearest to is one of a piece that swings, else 0.
+
+        Where that face lies in the open the foot of the point lies on its piece.
+
+        rows         its pieces, and whether each swings             (n, 19)
+        room         for vectors                                     (6, 3)
+        distance     of the point, and the outward normal       [m]  (3,)
+        point        in body axes                               [m]  (3,)
+
+        Checked  tests/net_capture/test_hinge.py
+        """
+        own, local = room[0], room[1]
+        nearest = math.inf
+        swings = 0
+        for k in range(rows.shape[0]):
+            row = rows[k]
+            x = point[0] - distance * normal[0] - row[5]
+            y = point[1] - distance * normal[1] - row[6]
+            z = point[2] - distance * normal[2] - row[7]
+            for i in range(3):
+                local[i] = row[8 + i] * x + row[11 + i] * y + row[14 + i] * z
+            off = abs(away(row, own, local))
+            if off < nearest:
+                nearest = off
+                swings = 1 if row[row.shape[0] - 1] != 0.0 else 0
+        return swings
+
+    @kernel
+    def touched(p):
+        """Whether the point of the surface found last belongs to the appendage.
+
+        Checked  tests/net_capture/test_hinged_contact.py
+        """
+        if p.hinge_touched == NOT_ASKED:
+            rows = p.hinge_rows[0 : pieces_of(p).shape[0]]
+            p.hinge_touched = of_swinging(rows, p.piece_room, p.hinge_gap, p.hinge_found[0], p.hinge_found[1])
+        return p.hinge_touched != 0
+
+    return touched
