@@ -148,6 +148,27 @@ def test_an_edge_that_goes_on_as_that_of_a_lower_block_is_followed_on_it(high):
         assert seek.lost == (0, 0)
 
 
+@pytest.mark.parametrize("back", [False, True])
+def test_a_way_that_is_held_in_a_corner_goes_over_to_an_edge_that_turns_off_there(back):
+    """Two blocks stand in an angle, their tops in one plane; the thread comes over the edge of one, and its upper end
+    goes round to above the other."""
+    first, second = box((1.0, 2.02, 1.0), (-0.5, -0.99, 0.5)), box((1.0, 1.0, 3.0), (-0.5, 0.5, -0.5))
+    seek = Seeker(laid(first, second))
+    low, held = np.array((-0.2, -0.3, -0.2)), []
+    up = 5e-4
+    goals = [(up, -0.3, 0.3), (up, -0.02, 0.3), (up, 0.3, 0.3), (up, 0.3, -0.1), (up, 0.3, -0.25)]
+    for one, other in itertools.pairwise(np.array(goals)):
+        for share in np.linspace(0.0, 1.0, 60):
+            ends = np.array((low, one + share * (other - one))) - first["position"] + BASE
+            way = seek(*(ends[::-1] if back else ends), 0.1 if held else WIDE)
+            held.append(bool(seek.p.visit_barred[: seek.p.visits].any()))
+            assert seek.lost == (0, 0)
+    assert any(held)
+    assert not held[-1]
+    aside = np.linalg.norm(low[:2] - (-INSET, INSET)) + np.linalg.norm(goals[-1][:2] - np.array((-INSET, INSET)))
+    assert way == pytest.approx(math.hypot(aside, goals[-1][2] - low[2]), abs=1e-9)
+
+
 @pytest.mark.parametrize(("stands", "visits"), [(1.5e-6, 2), (1e-5, 3)])
 def test_a_body_is_visited_that_stands_more_than_two_micrometres_into_the_way(stands, visits):
     seek = Seeker(towers((-0.5, 0.1, 0.4), (0.0, 0.1, 0.4 + stands), (0.5, 0.1, 0.4)))
