@@ -46,6 +46,8 @@ MARGIN = 0.01
 """Metres that a way may be longer than it was to be, for bodies that are near."""
 GRAZES = 2e-6
 """Metres by which a piece of the way may lie deeper in a body than a way round it."""
+THROUGH = 1e-4
+"""Metres by which it lies deeper where it has gone through: one that grazes is asked again a substep on."""
 LONGER = 1e-6
 """Metres by which a way that goes over to another body may be longer."""
 
@@ -117,9 +119,11 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return relax(p)
 
     @kernel
-    def crosses(p, body, piece, edges):
+    def crosses(p, body, piece, edges, deeper):
         """Whether a piece of the way goes through a body that is visited at neither of its ends; else `wrap_near` gets
         no longer than how far it is from that, at least.
+
+        deeper    than a way round it                       [m]
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
@@ -130,7 +134,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                 return False
         ends(p, piece, edges)
         take(p, body)
-        p.wrap_grazes = GRAZES
+        p.wrap_grazes = deeper
         first, _, _ = cut(p)
         p.wrap_grazes = 0.0
         if first < 0:
@@ -138,25 +142,35 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return first >= 0
 
     @kernel
-    def met(p, edges):
-        """Piece of the way that goes through a body, and that body; -1 where there is none. Bodies through which the
-        thread has gone are forgotten where it is clear of them. `wrap_near` gets how far it is from the others.
+    def crossed(p, body, edges, deeper):
+        """Piece of the way that goes through a body, -1: none does.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        for n in range(p.wrap_others_near):
+        for piece in range(edges + 1):
+            if crosses(p, body, piece, edges, deeper):
+                return piece
+        return -1
+
+    @kernel
+    def met(p, edges, left):
+        """Piece of the way that goes through a body, and the place of that in `wrap_others`; -1 where there is none.
+        Bodies through which the thread has gone are forgotten where it is clear of them. `wrap_near` gets how far it is
+        from the others.
+
+        left    how many are asked
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        for n in range(left):
             body = p.wrap_others[n]
             through = -1
             for s in range(p.visits_passed):
                 if p.visit_passed[s] == body:
                     through = s
-            hit = -1
-            for piece in range(edges + 1):
-                if crosses(p, body, piece, edges):
-                    hit = piece
-                    break
+            hit = crossed(p, body, edges, GRAZES)
             if through < 0 and hit >= 0:
-                return hit, body
+                return hit, n
             if through >= 0 and hit < 0:
                 p.visits_passed -= 1
                 p.visit_passed[through] = p.visit_passed[p.visits_passed]
@@ -174,8 +188,40 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return going
 
     @kernel
+    def go_round(p, work, words, place, a, b, piece, edges, body, length, expected, share):
+        """Let the way go round a body that has come to lie across a piece of it, on the first side on which it is no
+        longer than it may be; else it stays as it was. Over how many edges it bends then, 0: it can not.
+
+        Of faces, wall and lean: leans first where a visit has ended.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        before = max(expected, length_of(p, edges) if edges > 0 else expected)
+        keep(p, words, place)
+        left = p.visits_left
+        for attempt in range(len(SIDES) + 1):
+            side = SIDES[((LEAN_FIRST if left > 0 else 0) + attempt) % len(SIDES)]
+            if side == LEAN and left == 0 and edges == 0:
+                continue
+            if attempt > 0:
+                recall(p, words, place)
+                edges = relax(p)
+            p.visits_left = left
+            found = relax(p) if insert(p, piece, edges, body, side) else 0
+            if found > 0:
+                way = length_of(p, found)
+                within = JUMP + share * p.solver_substep * abs(rate(p, work, a, b, found))
+                if way <= before + max(within, STEP) or (attempt == len(SIDES) and way <= length):
+                    return found
+        recall(p, words, place)
+        return 0
+
+    @kernel
     def meet(p, work, words, place, a, b, edges, length, expected, share):
         """Let the way go round bodies that have come to lie across it; over how many edges it bends then.
+
+        Where it can not go round one by itself, another may be in the way first. Only those round which it can not go
+        in the end it has gone through.
 
         edges      over how many it bends before
         expected   length of the way as it was to be now             [m]
@@ -183,41 +229,29 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
+        left = p.wrap_others_near
         for _ in range(MEETINGS):
             p.wrap_near = math.inf
-            piece, body = met(p, edges)
-            if body < 0:
+            piece, n = met(p, edges, left)
+            if n < 0:
                 break
-            # the first side on which it is no longer than it may be, and after all the one that was tried first
-            before = max(expected, length_of(p, edges) if edges > 0 else expected)
-            keep(p, words, place)
-            found = 0
-            tried = 0
-            left = p.visits_left
-            for attempt in range(len(SIDES) + 1):
-                side = SIDES[((LEAN_FIRST if left > 0 else 0) + attempt) % len(SIDES)]
-                if side == LEAN and left == 0 and edges == 0:
-                    continue
-                if attempt > 0:
-                    recall(p, words, place)
-                    edges = relax(p)
-                p.visits_left = left
-                found = relax(p) if insert(p, piece, edges, body, side) else 0
-                if found > 0:
-                    tried += 1
-                    way = length_of(p, found)
-                    within = JUMP + share * p.solver_substep * abs(rate(p, work, a, b, found))
-                    if way <= before + max(within, STEP) or (attempt == len(SIDES) and way <= length):
-                        break
-                    found = 0
-            if found == 0:
-                recall(p, words, place)
-                edges = relax(p)
-                pass_through(p, body)
-                if tried > 0:
-                    p.wrap_passed += 1
-            else:
+            body = p.wrap_others[n]
+            found = go_round(p, work, words, place, a, b, piece, edges, body, length, expected, share)
+            if found > 0:
                 edges = found
+                left = p.wrap_others_near
+            else:
+                edges = relax(p)
+                left -= 1
+                p.wrap_others[n] = p.wrap_others[left]
+                p.wrap_others[left] = body
+        for n in range(left, p.wrap_others_near):
+            body = p.wrap_others[n]
+            if crossed(p, body, edges, GRAZES) >= 0:
+                if crossed(p, body, edges, THROUGH) >= 0:
+                    pass_through(p, body)
+                    p.wrap_passed += 1
+                p.wrap_near = 0.0
         return edges
 
     @kernel
@@ -235,7 +269,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         whole = found > 0 and length_of(p, found) <= way + LONGER
         if whole:
             for piece in range(found + 1):
-                whole = whole and not crosses(p, own, piece, found)
+                whole = whole and not crosses(p, own, piece, found, GRAZES)
         if not whole:
             recall(p, words, place)
             found = relax(p)

@@ -30,6 +30,8 @@ ROUNDS = 8
 """Times that the edges of all visits are looked for in one search."""
 ON = 1e-3
 """Metres that a bend may be from a face that goes on as that over which it lies."""
+AWAY = -0.5
+"""Cosine of the angle by which a face may look another way than that in whose place it comes."""
 RAISED = 1e-6
 """Metres by which bends stand out for their neighbours."""
 STRAIGHT = 1e-9
@@ -314,10 +316,12 @@ def make_visits(hulls: Any, lie: Lie, listed: VisitList) -> Visits:
         return True
 
     @kernel
-    def like(p, body, own, face, bend):
-        """Face of a body at a bend that looks the most as one of another body does, -1: none is there.
+    def like(p, body, own, face, bend, taken):
+        """Face of a body at a bend that looks the most as one of another body does, -1: none is there. Where bodies
+        meet at a corner it may look another way.
 
         own, face    the other body and its face
+        taken        a face that it is not
 
         Checked  tests/net_capture/test_visits.py
         """
@@ -325,8 +329,10 @@ def make_visits(hulls: Any, lie: Lie, listed: VisitList) -> Visits:
         other = planes[int(rows[own, FIRST]) + face]
         first = int(rows[body, FIRST])
         found = -1
-        most = 0.0
+        most = AWAY
         for k in range(int(rows[body, NUMBER])):
+            if k == taken:
+                continue
             plane = planes[first + k]
             off = dot(plane[0:3], p.wrap_bends[bend]) - plane[3] + p.wrap_inset
             alike = dot(plane[0:3], other[0:3])
@@ -346,8 +352,9 @@ def make_visits(hulls: Any, lie: Lie, listed: VisitList) -> Visits:
         v, before = owner(p, bend)
         own = p.visit_body[v]
         one, other = p.visit_chain[v, before], p.visit_chain[v, before + 1]
-        one, other = like(p, body, own, one, bend), like(p, body, own, other, bend)
-        if one < 0 or other < 0 or one == other:
+        one = like(p, body, own, one, bend, -1)
+        other = like(p, body, own, other, bend, one)
+        if one < 0 or other < 0:
             return False
         for i in range(3):
             p.wrap_a[i] = p.wrap_from[i]

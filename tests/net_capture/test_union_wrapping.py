@@ -244,7 +244,7 @@ def test_a_union_has_bodies_where_threads_bend_and_else_nothing_of_them(terms, b
 
 @pytest.mark.parametrize("tables", [PLATE, JOINED, SHELL], ids=["plate", "joined", "shell"])
 def test_bodies_lie_within_the_union_and_fill_it(tables):
-    """But for what a slab is less than its piece of a shell, and what a covered face may stand out."""
+    """But for what a chord and a tangent lie within a shell, and what a covered face may stand out."""
     away, room = formula(union.union_distance), np.empty((3, 3))
     rows, draw = tables["target.pieces"], np.random.default_rng(3)
     numbers = {union.PIECES: rows}
@@ -269,7 +269,7 @@ def test_bodies_lie_within_the_union_and_fill_it(tables):
     assert all(held)
 
 
-def test_a_thread_is_drawn_along_the_rim_of_a_shell_from_slab_to_slab(kernels):
+def test_a_thread_is_drawn_along_the_rim_of_a_shell_from_body_to_body(kernels):
     """Over the open end of its wall: its nodes hang on both sides, and it goes through nothing."""
     center = union.body_of(np.array(pieces.gather([WALL, CAP]))).center
     out = np.array([math.cos(-0.2), math.sin(-0.2), 0.0])
@@ -279,7 +279,7 @@ def test_a_thread_is_drawn_along_the_rim_of_a_shell_from_slab_to_slab(kernels):
     at = scene.planes[X : X + 3, :2].T + center
     assert scene.p["wrap_passed"] == 0
     assert scene.p["wrap_impulse"] > 0.1
-    assert (np.arctan2(at[:, 1], at[:, 0]) > -0.1).all(), "from a slab that ends at -0.121"
+    assert (np.arctan2(at[:, 1], at[:, 0]) > -0.1).all(), "past the inner edge of a body, which ends at -0.121"
     assert (at[:, 2] > -1.95).all()
     assert (at[:, 2] < -1.7).all(), "held by the end of the wall"
     away = np.hypot(at[:, 0], at[:, 1])

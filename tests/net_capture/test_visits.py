@@ -134,6 +134,64 @@ def test_an_edge_ends_where_it_runs_into_another_body():
     assert depths[0] < depths[1] - 1e-3, "alone it reaches 2 cm into the base"
 
 
+@pytest.mark.parametrize("high", [0.1, 0.2, 0.3])
+def test_an_edge_that_goes_on_as_that_of_a_lower_block_is_followed_on_it(high):
+    """The end of the first block stands above the second: there the edge has an end over which a way could slide. Both
+    ends of the thread lie on the faces, so that nothing else brings it over to the second."""
+    seek = Seeker(laid(box((1.0, 0.4, 1.0), tuple(BASE)), box((0.5, high, 1.0), (0.75, 0.5 * high - 0.4, 0.0))))
+    edge, aslant = np.array((-0.4 + INSET, 0.5 - INSET)), 0.15
+    a, b = np.array((-0.4005, 0.3)), np.array((-0.4 + 0.5 * high, 0.5005))
+    way = math.hypot(np.linalg.norm(a - edge) + np.linalg.norm(b - edge), aslant)
+    seek(np.array((-0.3, *a)), np.array((aslant - 0.3, *b)))
+    for x in [*np.linspace(-0.3, 0.75, 70), *np.linspace(0.75, -0.3, 60)]:
+        assert seek(np.array((x, *a)), np.array((x + aslant, *b)), 0.1) == pytest.approx(way, abs=1e-9)
+        assert seek.lost == (0, 0)
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_way_that_is_held_in_a_corner_goes_over_to_an_edge_that_turns_off_there(back):
+    """Two blocks stand in an angle, their tops in one plane; the thread comes over the edge of one, and its upper end
+    goes round to above the other."""
+    first, second = box((1.0, 2.02, 1.0), (-0.5, -0.99, 0.5)), box((1.0, 1.0, 3.0), (-0.5, 0.5, -0.5))
+    seek = Seeker(laid(first, second))
+    low, held = np.array((-0.2, -0.3, -0.2)), []
+    up = 5e-4
+    goals = [(up, -0.3, 0.3), (up, -0.02, 0.3), (up, 0.3, 0.3), (up, 0.3, -0.1), (up, 0.3, -0.25)]
+    for one, other in itertools.pairwise(np.array(goals)):
+        for share in np.linspace(0.0, 1.0, 60):
+            ends = np.array((low, one + share * (other - one))) - first["position"] + BASE
+            way = seek(*(ends[::-1] if back else ends), 0.1 if held else WIDE)
+            held.append(bool(seek.p.visit_barred[: seek.p.visits].any()))
+            assert seek.lost == (0, 0)
+    assert any(held)
+    assert not held[-1]
+    aside = np.linalg.norm(low[:2] - (-INSET, INSET)) + np.linalg.norm(goals[-1][:2] - np.array((-INSET, INSET)))
+    assert way == pytest.approx(math.hypot(aside, goals[-1][2] - low[2]), abs=1e-9)
+
+
+@pytest.mark.parametrize(("stands", "visits"), [(1.5e-6, 2), (1e-5, 3)])
+def test_a_body_is_visited_that_stands_more_than_two_micrometres_into_the_way(stands, visits):
+    seek = Seeker(towers((-0.5, 0.1, 0.4), (0.0, 0.1, 0.4 + stands), (0.5, 0.1, 0.4)))
+    for y in np.linspace(1.0, 0.1, 30):
+        seek(np.array((-1.1, y, 0.0)), np.array((1.1, y, 0.0)))
+    assert int(seek.p.visits) == visits
+    assert seek.lost == (0, 0)
+
+
+@pytest.mark.parametrize(("stands", "passed"), [(5e-5, 0), (2e-4, 1)])
+def test_a_body_that_can_not_be_visited_counts_where_it_is_more_than_a_tenth_of_a_millimetre_deep(stands, passed):
+    """The thread has gone through as many others, elsewhere, as are kept. What is not counted is asked again."""
+    seek, listed, others = Seeker(towers((0.0, 0.6, 0.5))), make_visit_list(), 7
+    seek.p.visits, seek.p.visits_passed, seek.p.visit_passed[:others] = 0, others, range(100, 100 + others)
+    plainly(listed.keep.py_func)(seek.p, seek.words, near.KEPT)
+    for high in (0.6, 0.5 - INSET - stands):
+        seek(np.array((-1.0, high, 0.0)), np.array((1.0, high, 0.0)), 0.1)
+    assert int(seek.p.visits) == 0
+    assert seek.lost == (passed, 0)
+    assert seek.p.visits_passed == others + passed
+    assert seek.p.wrap_clear == 0.0
+
+
 BOOM = {"shape": pieces.CYLINDER, "radius": 0.04, "length": 0.84, "mass": 4.0, "position": [0.0, 0.0, -0.4]}
 STANDING = laid(BOOM, box((1.6, THICK, 1.0), (0.0, 0.0, 0.5)))
 """A plate whose lower edge is at z = 0, and a boom that reaches 2 cm into it and is thicker."""

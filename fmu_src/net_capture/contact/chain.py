@@ -35,6 +35,7 @@ class Chain(NamedTuple):
     lift(p, edges)         leave out faces from which the way has lifted off, one after another
     lengthen(p, edges)     put faces where an end does not see the outermost one
     uncover(p, edges)      leave out faces that lie in another body
+    bare(p, edges)         leave out outermost faces behind edges that lie in other bodies
     """
 
     sees: Any
@@ -42,10 +43,11 @@ class Chain(NamedTuple):
     lift: Any
     lengthen: Any
     uncover: Any
+    bare: Any
 
 
-def make_chain(lay: Any, several: bool) -> Chain:
-    """Kernels; `lay(p, j, one, other)` of `edges` puts an edge between two faces.
+def make_chain(lay: Any, several: bool, elsewhere: Any) -> Chain:
+    """Kernels; `lay(p, j, one, other)` of `edges` puts an edge between two faces; `elsewhere` is that of `hidden`.
 
     several    whether an end may be a bend round another body, in the plane of a face
     """
@@ -120,15 +122,52 @@ def make_chain(lay: Any, several: bool) -> Chain:
         return found
 
     @kernel
-    def covers(p, face):
-        """Whether a face lies in another body, so that no way comes over it: the other is in the way then.
+    def covers(p, face, end, point):
+        """Whether a face lies in another body, or does where the straight line from an end of the thread to a point
+        comes in through it, so that no way comes over it there: the other is in the way then.
 
-        Checked  tests/net_capture/test_union_wrapping.py
+        Checked  tests/net_capture/test_union_wrapping.py, test_shell_wrapping.py
         """
         covered = False
         if several:
             covered = p.wrap_covered[face] > 0
+            if not covered:
+                plane, place = p.wrap_planes[face], p.wrap_moving
+                above = dot(plane[0:3], end) - plane[3] + p.wrap_inset
+                there = dot(plane[0:3], point) - plane[3] + p.wrap_inset
+                for i in range(3):
+                    place[i] = end[i] + above / (above - there) * (point[i] - end[i])
+                covered = elsewhere(p, end, place, face)
         return covered
+
+    @kernel
+    def hidden(p, one, other):
+        """Whether the edge between two faces lies in other bodies, so that no way comes over it.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        gone = False
+        if several:
+            gone = not lay(p, 0, one, other) and (p.wrap_pairs[0, 2] < 0 or p.wrap_pairs[0, 3] < 0)
+        return gone
+
+    @kernel
+    def bare(p, edges):
+        """Leave out the first face and the last while the edge that they have with the next lies in other bodies. Works
+        on `wrap_chain`; how many edges are left.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        chain = p.wrap_chain
+        first = 0
+        while first < edges and hidden(p, chain[first], chain[first + 1]):
+            first += 1
+        last = edges
+        while last > first and hidden(p, chain[last - 1], chain[last]):
+            last -= 1
+        for j in range(first, last + 1):
+            chain[j - first] = chain[j]
+        return last - first
 
     @kernel
     def lengthen(p, edges):
@@ -164,7 +203,7 @@ def make_chain(lay: Any, several: bool) -> Chain:
                 face = come_in(p, end, point)
                 if face < 0:
                     return 0
-                if covers(p, face):
+                if covers(p, face, end, point) or hidden(p, face, chain[0 if way == 0 else edges]):
                     break
                 edges += 1
                 if way == 0:
@@ -188,4 +227,4 @@ def make_chain(lay: Any, several: bool) -> Chain:
                 p.wrap_chain[left] = p.wrap_chain[j]
         return left
 
-    return Chain(sees, trim, lift, lengthen, uncover)
+    return Chain(sees, trim, lift, lengthen, uncover, bare)

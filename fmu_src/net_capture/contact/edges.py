@@ -21,7 +21,7 @@ import math
 from typing import Any
 
 from fmu_src.net_capture.contact.chain import KEPT, LOST, make_chain
-from fmu_src.net_capture.contact.hidden import make_hide
+from fmu_src.net_capture.contact.hidden import make_elsewhere, make_hide
 from fmu_src.net_capture.contact.section import MOST, make_section
 from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, along, make_shortest
 from orbital.kernel import kernel
@@ -106,8 +106,9 @@ def make_way(hulls: Any = None) -> Any:
         p.wrap_spans[j, TAU] = min(max(middle, low), high)
         return low <= high + TOGETHER and not beside
 
-    chain = make_chain(lay, leans)
-    sees, trim, lift, lengthen, uncover = chain.sees, chain.trim, chain.lift, chain.lengthen, chain.uncover
+    chain = make_chain(lay, leans, make_elsewhere(hulls))
+    sees, trim, lift, lengthen = chain.sees, chain.trim, chain.lift, chain.lengthen
+    uncover, bare = chain.uncover, chain.bare
 
     @kernel
     def shift(p, edges, j, by):
@@ -335,7 +336,7 @@ def make_way(hulls: Any = None) -> Any:
                 return 0
             edges = trim(p, over(p, first, last, middle))
             if leans:
-                edges = uncover(p, edges)
+                edges = bare(p, uncover(p, edges))
                 if not lay_all(p, edges):
                     return 0
             else:

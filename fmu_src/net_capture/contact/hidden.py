@@ -17,6 +17,11 @@ PARALLEL = 1e-9
 """Sine of the angle of an edge to a face that never meets it."""
 DEEPER = 2e-7
 """Metres below what ways lie within another body, from where on an edge is in that."""
+PAST = 1e-5
+"""Metres past the end of an edge at which it is looked whether another body goes on there; no shorter part of one is
+left."""
+ALIKE = 1e-9
+"""By which the cosine of the angle between two faces in one plane may be less than 1."""
 APART = 1e-6
 """Metres of an edge from both ends, no less than that, where they are divided by."""
 
@@ -53,9 +58,32 @@ def make_hide(hulls: Any) -> Any:
         return (first * far + last * near) / max(near + far, APART)
 
     @kernel
+    def goes_on(p, edge, foot, tau):
+        """Whether a place along an edge lies in another body in `wrap_others`, or on one.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        rows, planes = bodies_of(p), planes_of(p)
+        for n in range(p.wrap_others_near):
+            body = p.wrap_others[n]
+            if body == p.wrap_body:
+                continue
+            first = int(rows[body, FIRST])
+            within = True
+            for k in range(first, first + int(rows[body, NUMBER])):
+                above = dot(planes[k, 0:3], foot) + tau * dot(planes[k, 0:3], edge) - planes[k, 3] + p.wrap_inset
+                if above > DEEPER:
+                    within = False
+                    break
+            if within:
+                return True
+        return False
+
+    @kernel
     def hide(p, j):
         """Leave out of an edge what lies within the other bodies in `wrap_others`, or in one of their faces. Of the
-        parts before and behind one the way goes over that which is nearer to it.
+        parts before and behind one the way goes over that which is nearer to it. Over an end behind which another body
+        goes on the way does not slide.
 
         Checked  tests/net_capture/test_visits.py
         """
@@ -86,11 +114,53 @@ def make_hide(hulls: Any) -> Any:
                 if enters >= leaves or flush > 1:
                     continue
                 before, behind = enters - span[LOW], span[HIGH] - leaves
-                if behind <= 0.0 or (before > 0.0 and middle < 0.5 * (enters + leaves)):
-                    span[HIGH] = enters if before > 0.0 else -math.inf
+                if behind <= PAST or (before > PAST and middle < 0.5 * (enters + leaves)):
+                    span[HIGH] = enters if before > PAST else -math.inf
                     pair[3] = -1
                 else:
                     span[LOW] = leaves
                     pair[2] = -1
+            for end in range(2):
+                tau = span[LOW] - PAST if end == 0 else span[HIGH] + PAST
+                if pair[2 + end] >= 0 and abs(tau) < math.inf and goes_on(p, edge, foot, tau):
+                    pair[2 + end] = -1
 
     return hide
+
+
+def make_elsewhere(hulls: Any) -> Any:
+    """Kernel `elsewhere(p, end, point, face)`: whether a point of a face of the body in `wrap_planes` lies in another
+    body of those listed in `wrap_others`, or on one, but for one with a face in the same plane there, and one on which
+    the end of the way lies from which it comes. Never for None.
+
+    Checked  tests/net_capture/test_shell_wrapping.py
+    """
+    several = hulls is not None
+    bodies_of, planes_of = (hulls.bodies, hulls.planes) if several else (None, None)
+
+    @kernel
+    def elsewhere(p, end, point, face):
+        """Whether a point of a face lies in another body.
+
+        Checked  tests/net_capture/test_shell_wrapping.py
+        """
+        if several:
+            rows, planes = bodies_of(p), planes_of(p)
+            for n in range(p.wrap_others_near):
+                body = p.wrap_others[n]
+                if body == p.wrap_body:
+                    continue
+                first = int(rows[body, FIRST])
+                within, apart = True, False
+                for k in range(first, first + int(rows[body, NUMBER])):
+                    above = dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset
+                    apart = apart or dot(planes[k, 0:3], end) - planes[k, 3] + p.wrap_inset > PAST
+                    same = above > -PAST and dot(planes[k, 0:3], p.wrap_planes[face, 0:3]) > 1.0 - ALIKE
+                    if above > PAST or same:
+                        within = False
+                        break
+                if within and apart:
+                    return True
+        return False
+
+    return elsewhere
