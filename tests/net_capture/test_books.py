@@ -3,6 +3,7 @@
 import json
 import tomllib
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from dcone_cosim.loading import shipped
 from tests.net_capture.evidence import books
 from tests.net_capture.evidence.books import TOOK, Recorded, captures, judged
 
+ROOT = Path(__file__).parents[2]
 KEPT, BOOK = 1e-9, 0.01
 """Shares of the shot's momentum, and of the energy that came in."""
 WIDER = {"big-panel": 0.02, "big-panel-wrapped": 0.02, "fairing": 0.012}
@@ -105,3 +107,24 @@ def test_a_capture_comes_out_as_it_is_stored():
     assert {name: stored[name] for name in ("start", "left", "now", "took")} == {
         name: judged(of)[name] for name in ("start", "left", "now", "took")
     }
+
+
+def test_the_page_tells_what_is_stored():
+    """Where each joule went, of some scenes."""
+    (_, table) = (ROOT / "fmu_src" / "net_capture" / "README.md").read_text().split("| scene | at the start |", 1)
+    told = [line.split("|")[1:-1] for line in table.split("\n\n")[0].splitlines()[2:]]
+    rows = {row["scene"]: row for row in json.loads(books.RESULT.read_text())["rows"]}
+    assert len(told) > 5
+    for name, *cells in told:
+        row = rows[name.strip(" `")]
+        gave, took = row["gave"], row["took"]
+        slipped, load = took.get("wrap.slip_loss"), gave.get("pull_off.work")
+        losses = (took["contact.loss"], took["thread.dissipated"], took["cord.dissipated"])
+        stored = (row["start"], gave["closing.work"], load, *losses, slipped, row["now"], row["left"])
+        for cell, value in zip(cells, stored, strict=True):
+            if value is None:
+                assert cell.strip() == "-"
+            else:
+                figure = cell.strip().removesuffix(" J")
+                digits = len(figure.partition(".")[2])
+                assert float(figure) == pytest.approx(value, abs=0.51 * 10.0**-digits), (name, cell)
