@@ -6,14 +6,16 @@ The life is `bare` (instantiate, free), `whole` (set, initialise, step, save, re
 
 import gc
 import json
+import math
 import os
 import sys
 
 from tests.packaging.raw import OK, Library, Raw
 
-WARM, CYCLES, CROWD = 3000, 3000, 50
-"""Cycles before memory is looked at (Python and malloc have then found their size), cycles that count, and how many
-instances a crowd has."""
+WARM, CYCLES, CROWD, ROUNDS = 3000, 3000, 50, 3
+"""Cycles before memory is looked at (Python and malloc have then found their size), cycles that count, how many
+instances a crowd has, and how often cycles are counted while memory grows: a leak loses as much each time, what malloc
+moves about comes once."""
 
 
 def resident():
@@ -64,7 +66,7 @@ def crowd(make, leak, values, size):
 
 
 def grown(library, guid, life, leak, names, values, size):
-    """Bytes by which memory has grown over the cycles, after some to warm up."""
+    """Bytes by which memory has grown over the cycles at least, after some to warm up."""
 
     def make():
         return begin(library, guid, names)
@@ -81,9 +83,14 @@ def grown(library, guid, life, leak, names, values, size):
 
     each = CROWD if life == "crowd" else 1
     run(WARM // each)
-    before = resident()
-    run(CYCLES // each)
-    return resident() - before
+    least = math.inf
+    for _ in range(ROUNDS):
+        before = resident()
+        run(CYCLES // each)
+        least = min(least, resident() - before)
+        if least <= 0:
+            break
+    return least
 
 
 if __name__ == "__main__":
