@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from orbital.kernel import kernel
 from tests.net_capture.on_target import Kernels
 from tests.net_capture.two_bodies import (
     AXIS,
@@ -19,6 +18,7 @@ from tests.net_capture.two_bodies import (
     TwoBodies,
     body_turn,
     design_attitude,
+    free_motion,
     moving,
     tables_of,
 )
@@ -32,19 +32,7 @@ def law():
 @pytest.fixture(scope="module")
 def told(law):
     """Kernels of the target that the tests ask."""
-    target = law.bench.parts.target
-    measure, drift = target.measure, target.drift
-
-    @kernel
-    def tell(record):
-        measure(record[0])
-
-    @kernel
-    def fly(record, frame_rate, step, steps):
-        for _ in range(steps):
-            drift(record[0], frame_rate, step)
-
-    return {"tell": tell, "fly": fly}
+    return dict(zip(("tell", "fly"), free_motion(law), strict=True))
 
 
 RATE, SWING = np.array([0.15, -0.1, 0.2]), {"start_angle": 0.4, "start_rate": -0.3, "stiffness": 60.0, "damping": 4.0}

@@ -13,10 +13,9 @@ from fmu_src.net_capture.appendage.laying import lightest, matrix
 from fmu_src.net_capture.hinge import numbers as at
 from fmu_src.net_capture.hinge.motion import FASTEST
 from fmu_src.net_capture.interface import MODEL, refusals
-from orbital.kernel import kernel
 from tests.conftest import CAPTURE
 from tests.net_capture.on_target import Kernels
-from tests.net_capture.two_bodies import EDGE, FLAT, TERMS, TwoBodies, design_attitude, moving, tables_of
+from tests.net_capture.two_bodies import EDGE, FLAT, TERMS, TwoBodies, design_attitude, free_motion, moving, tables_of
 
 RATE = np.array([0.1, -0.15, 0.2])
 
@@ -33,19 +32,7 @@ def law():
 
 @pytest.fixture(scope="module")
 def told(law):
-    target = law.bench.parts.target
-    measure, drift = target.measure, target.drift
-
-    @kernel
-    def tell(record):
-        measure(record[0])
-
-    @kernel
-    def fly(record, step, steps):
-        for _ in range(steps):
-            drift(record[0], 0.0, step)
-
-    return tell, fly
+    return free_motion(law)
 
 
 @pytest.mark.parametrize("factor", [1e-8, 1e4])
@@ -58,7 +45,7 @@ def test_next_to_nothing_on_its_hinge_or_all_of_it(law, told, factor):
     two = TwoBodies(entries, EDGE, np.array([1.0, 0.0, 0.0]), soft)
     tell(scene.record)
     energy = float(scene.p["target_energy"] + scene.p["hinge_energy"])
-    fly(scene.record, 2e-3, 1500)
+    fly(scene.record, 0.0, 2e-3, 1500)
     end = two.fly(two.start(attitude, attitude.apply(RATE), 0.0, 0.3), 3.0)
     assert scene.p["hinge_now"][6] == pytest.approx(two.angle(end), abs=1e-8)
     assert (design_attitude(scene, tables) * two.parts(end)[0][1].inv()).magnitude() < 1e-8
@@ -72,7 +59,7 @@ def test_a_strong_dashpot_lets_it_creep(law, told, damping):
     tell, fly = told
     stiffness = 0.5 * damping
     scene, _, _ = moving(law, FLAT, EDGE, [1.0, 0.0, 0.0], start_angle=0.3, stiffness=stiffness, damping=damping)
-    fly(scene.record, 1e-3, 1000)
+    fly(scene.record, 0.0, 1e-3, 1000)
     assert scene.p["hinge_now"][6] == pytest.approx(0.3 * math.exp(-0.5), rel=2.0 * 60.0 / damping)
     tell(scene.record)
     stored = 0.5 * stiffness * 0.3**2

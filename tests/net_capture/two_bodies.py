@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from fmu_src.net_capture.appendage import laying
 from fmu_src.net_capture.shapes import pieces, solids, union
+from orbital.kernel import kernel
 
 TERMS = {"net": "square", "gravity": "none", "target": "union", "hinge": "plain"}
 TURN = Rotation.from_rotvec([0.2, -0.3, 0.5])
@@ -148,6 +149,23 @@ def moving(law, entries=WING, point=POINT, axis=AXIS, limit=1.2, rate=(0.0, 0.0,
     }
     values |= {name if name.startswith("contact") else f"hinge_{name}": value for name, value in hinge.items()}
     return law.place(tables, **values), tables, attitude
+
+
+def free_motion(law):
+    """Kernels of such a target without contact: `tell(record)`, and `fly(record, frame_rate, step, steps)`."""
+    target = law.bench.parts.target
+    measure, drift = target.measure, target.drift
+
+    @kernel
+    def tell(record):
+        measure(record[0])
+
+    @kernel
+    def fly(record, frame_rate, step, steps):
+        for _ in range(steps):
+            drift(record[0], frame_rate, step)
+
+    return tell, fly
 
 
 def design_attitude(scene, tables):
