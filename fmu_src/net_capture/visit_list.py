@@ -18,7 +18,7 @@ from orbital.kernel import kernel
 
 OTHERS = 256
 """Bodies near one thread that are looked at."""
-VISITS = 8
+VISITS = 16
 """Visits of one thread, and bodies through which it has gone, that are remembered."""
 SLOT = 2 + CHAIN_WORDS + 6
 """Whole numbers of each: the number of its body from 1 on, less than 0 where the thread has gone through it and 0 for
@@ -35,6 +35,7 @@ class VisitList(NamedTuple):
     remember(p, body)            the thread has gone through a body
     make_room(p, v)              for one more visit at place v of the list
     leave(p, v)                  take one off
+    unite(p)                     make those one that join
     part(p, v, bends, skipped)   part a visit; the place between both
     name(p)                      the edges of the way by their bodies and faces, into `wrap_names`
     owner(p, bend)               which visit a bend belongs to, -1: it is an end; how many bends of that come before
@@ -45,6 +46,7 @@ class VisitList(NamedTuple):
     remember: Any
     make_room: Any
     leave: Any
+    unite: Any
     part: Any
     name: Any
     owner: Any
@@ -167,7 +169,7 @@ def make_visit_list() -> VisitList:
         p.visits += 1
 
     @kernel
-    def take_off(p, v):
+    def leave(p, v):
         """Take a visit off the list.
 
         Checked  tests/net_capture/test_visits.py
@@ -177,23 +179,22 @@ def make_visit_list() -> VisitList:
         p.visits -= 1
 
     @kernel
-    def leave(p, v):
-        """Take a visit off the list. Where both its neighbours are to one body, over faces that join, they become one.
+    def unite(p):
+        """Make visits that follow one another to one body, over faces that join, one: so the way may slide over the
+        corner between them.
 
         Checked  tests/net_capture/test_visits.py
         """
-        take_off(p, v)
-        if v < 1 or v >= p.visits or p.visit_body[v - 1] != p.visit_body[v]:
-            return
-        edges, more = p.visit_edges[v - 1], p.visit_edges[v]
-        if p.visit_chain[v - 1, edges] != p.visit_chain[v, 0] or edges + more > MOST:
-            return
-        for j in range(1, more + 1):
-            p.visit_chain[v - 1, edges + j] = p.visit_chain[v, j]
-        p.visit_edges[v - 1] = edges + more
-        for i in range(3):
-            p.visit_ends[v - 1, 3 + i] = p.visit_ends[v, 3 + i]
-        take_off(p, v)
+        for v in range(p.visits - 1, 0, -1):
+            edges, more = p.visit_edges[v - 1], p.visit_edges[v]
+            joins = p.visit_chain[v - 1, edges] == p.visit_chain[v, 0] and edges + more <= MOST
+            if joins and p.visit_body[v - 1] == p.visit_body[v]:
+                for j in range(1, more + 1):
+                    p.visit_chain[v - 1, edges + j] = p.visit_chain[v, j]
+                p.visit_edges[v - 1] = edges + more
+                for i in range(3):
+                    p.visit_ends[v - 1, 3 + i] = p.visit_ends[v, 3 + i]
+                leave(p, v)
 
     @kernel
     def part(p, v, bends, skipped):
@@ -218,7 +219,7 @@ def make_visit_list() -> VisitList:
             if after > 0:
                 p.visit_ends[second, i] = p.wrap_b[i]
         if bends == 0 and after == 0:
-            take_off(p, v)
+            leave(p, v)
         return second
 
     @kernel
@@ -249,4 +250,4 @@ def make_visit_list() -> VisitList:
             before -= p.visit_edges[v]
         return -1, 0
 
-    return VisitList(recall, keep, remember, make_room, leave, part, name, owner)
+    return VisitList(recall, keep, remember, make_room, leave, unite, part, name, owner)

@@ -60,7 +60,8 @@ class Visits(NamedTuple):
 
 def make_visits(hulls: Any, lie: Lie, listed: VisitList) -> Visits:
     """Kernels for the bodies of a union, on a list of visits."""
-    make_room, leave, part, owner = listed.make_room, listed.leave, listed.part, listed.owner
+    make_room, leave, unite = listed.make_room, listed.leave, listed.unite
+    part, owner = listed.part, listed.owner
     bodies_of, planes_of, find, settle = hulls.bodies, hulls.planes, lie.find, make_shortest()
 
     @kernel
@@ -211,6 +212,7 @@ def make_visits(hulls: Any, lie: Lie, listed: VisitList) -> Visits:
             again = False
             edges = 0
             whole = True
+            unite(p)
             for v in range(p.visits):
                 these, changed = look(p, v)
                 if edges + these > MOST:

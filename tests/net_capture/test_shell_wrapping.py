@@ -11,8 +11,8 @@ from fmu_src.net_capture.planes import P
 from fmu_src.net_capture.shapes import pieces, union
 from fmu_src.net_capture.shapes.hulls import INSET
 from fmu_src.net_capture.visit_list import make_visit_list
-from tests.net_capture.test_union_wrapping import laid
-from tests.net_capture.test_visits import BASE, Seeker
+from tests.net_capture.test_union_wrapping import THICK, box, laid
+from tests.net_capture.test_visits import BASE, BOOM, Seeker
 from tests.net_capture.ways_in_the_open import (
     HIDDEN,
     bodies_and_faces,
@@ -46,6 +46,17 @@ class Drawn(Seeker):
                 found.append(self(*(now + BASE), length=length))
                 before = now
         return np.array(found)
+
+    def lies(self, visits, way):
+        """Let it lie as by a list of visits (body, faces, first bend, last bend), over that length [m]."""
+        p, listed = self.p, make_visit_list()
+        p.visits, p.visits_passed = len(visits), 0
+        for v, (body, faces, first, last) in enumerate(visits):
+            p.visit_body[v], p.visit_edges[v] = body, len(faces) - 1
+            p.visit_chain[v, : len(faces)] = faces
+            p.visit_ends[v] = self.body_axes(np.array((first, last)) + BASE).ravel()
+        plainly(listed.keep.py_func)(p, self.words, near.KEPT)
+        self.words[near.STATE], self.words[near.WAY] = near.BENT, round(way / near.FINE)
 
     def bends(self):
         """Places where the way bends now, ends included, body axes [m] (n, 3)."""
@@ -195,6 +206,73 @@ def test_a_thread_keeps_the_side_on_which_it_came_to_lie(ends):
         assert ways[-1] == pytest.approx(length(way), abs=known)
         beside = slid(bodies, edges_near(bodies, 0.5 * (bends[0] + bends[-1])), bends)
         assert ways[-1] == pytest.approx(length(beside), abs=known)
+
+
+def at(degrees, away, height):
+    return turned(math.radians(degrees), away, height)
+
+
+OVER_CORNERS = {
+    "of one body": (
+        [(4, (4, 1), at(-22.0, 1.2955, 2.278), at(-22.0, 1.2955, 2.278))]
+        + [(4, (1, 2), at(-20.771, 1.298, 2.25), at(-20.771, 1.298, 2.25))],
+        ((0.55, -0.5, 2.28), at(-13.91, 1.3, 1.95)),
+        ((0.5, -0.35, 2.28), at(-13.91, 1.3, 2.05)),
+    ),
+    "of two bodies": (
+        [(9, (4, 1), at(45.23, 1.2912, 2.278), at(45.23, 1.2912, 2.278))]
+        + [(10, (0, 1), at(48.46, 1.298, 2.2146), at(48.46, 1.298, 2.2146))],
+        (at(30.93, 1.0656, 2.2845), at(60.91, 1.3039, 1.9707)),
+        (at(45.6, 1.2218, 2.279), at(61.25, 1.33, 2.02)),
+    ),
+}
+
+
+@pytest.mark.parametrize(("visits", "before", "after"), OVER_CORNERS.values(), ids=OVER_CORNERS)
+def test_a_way_that_slides_over_the_corner_between_two_visits_is_not_lost(visits, before, after):
+    """It becomes shorter at once, as it does over a corner of one visit; it has gone through nothing."""
+    seek, bodies = Drawn(FAIRING), bodies_and_faces(FAIRING)
+    seek.lies(visits, 0.8)
+    seek(*(np.array(end) + BASE for end in before), length=1.0)
+    seek.p.wrap_passed_slack = 0
+    ways = seek.drawn((before, after), 100, 1.0)
+    bends = seek.bends()
+    assert np.diff(ways).min() < -1e-3
+    assert seek.p.visits == 1
+    assert inside(bodies, bends[:-1], bends[1:]).max() < 1e-3
+    beside = slid(bodies, edges_near(bodies, 0.5 * (bends[0] + bends[-1])), bends)
+    assert ways[-1] == pytest.approx(length(beside), abs=1e-9)
+    assert seek.lost == (0, 0)
+
+
+def test_a_way_held_at_the_end_of_an_edge_goes_over_to_no_body_through_others():
+    """It comes from beneath the cap round its straight rim to above it; over that of another body at the same place it
+    would be shorter, through the cap."""
+    seek, bodies = Drawn(FAIRING), bodies_and_faces(FAIRING)
+    low, high = at(-89.91, 1.261, 2.232), at(-89.91, 1.2923, 2.278)
+    seek.lies([(0, (2, 3), low, low), (0, (3, 4), high, high)], 0.99502)
+    way = seek(np.array((0.83583, -0.84831, 2.2297)) + BASE, at(-89.8722, 1.2974, 2.2854) + BASE, length=1.0)
+    bends = seek.bends()
+    assert way == pytest.approx(0.99502, abs=1e-4)
+    assert inside(bodies, bends[:-1], bends[1:]).max() < 1e-3
+
+
+def test_a_way_whose_bend_lies_as_deep_in_a_plate_as_ways_do_goes_round_that():
+    """It has slid over a corner of the boom, past the ledge beside the plate's edge, and is held where its edge runs
+    into that: as deep in the plate as ways lie, so whether that is in or out is rounding."""
+    tables = laid(BOOM, box((1.6, THICK, 1.0), (0.1, 0.0, 0.5)))
+    seek, up, bodies = Drawn(tables), np.array(BOOM["position"]), bodies_and_faces(tables)
+    first, last = np.array((-0.0145, 0.035, 0.018)) - up, np.array((-0.035, -0.0145, -0.0314)) - up
+    b = np.array((0.0224, -0.1146, -0.1296)) - up + BASE
+    others = 0
+    for high in np.linspace(0.477, 0.51, 30):
+        seek.lies([(0, (2, 3, 4, 5), first, last)], 0.93)
+        seek(np.array((0.4914, 0.2077, high)) - up + BASE, b, length=0.9)
+        bends = seek.bends()
+        assert seek.lost == (0, 0)
+        assert inside(bodies, bends[:-1], bends[1:]).max() < 1e-3
+        others += 1 in seek.p.visit_body[: seek.p.visits]
+    assert others == 30
 
 
 def test_an_end_that_comes_up_past_the_open_end_meets_the_body_that_is_there():

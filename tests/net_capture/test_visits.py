@@ -13,7 +13,7 @@ from fmu_src.net_capture.lying import make_lie
 from fmu_src.net_capture.planes import X
 from fmu_src.net_capture.shapes import pieces, union
 from fmu_src.net_capture.shapes.hulls import INSET
-from fmu_src.net_capture.visit_list import make_visit_list
+from fmu_src.net_capture.visit_list import VISITS, make_visit_list
 from fmu_src.net_capture.visits import make_visits
 from tests.net_capture.memory import Bench, planes_of
 from tests.net_capture.test_union_wrapping import THICK, box, laid
@@ -181,7 +181,7 @@ def test_a_body_is_visited_that_stands_more_than_two_micrometres_into_the_way(st
 @pytest.mark.parametrize(("stands", "passed"), [(5e-5, 0), (2e-4, 1)])
 def test_a_body_that_can_not_be_visited_counts_where_it_is_more_than_a_tenth_of_a_millimetre_deep(stands, passed):
     """The thread has gone through as many others, elsewhere, as are kept. What is not counted is asked again."""
-    seek, listed, others = Seeker(towers((0.0, 0.6, 0.5))), make_visit_list(), 7
+    seek, listed, others = Seeker(towers((0.0, 0.6, 0.5))), make_visit_list(), VISITS - 1
     seek.p.visits, seek.p.visits_passed, seek.p.visit_passed[:others] = 0, others, range(100, 100 + others)
     plainly(listed.keep.py_func)(seek.p, seek.words, near.KEPT)
     for high in (0.6, 0.5 - INSET - stands):

@@ -91,9 +91,11 @@ def make_section(leans: bool) -> Section:
         if length == 0.0:
             return -1, -1, 0.0
         p.wrap_inset = 0.0
-        p.wrap_inset = max(INSET, max(-above(p, a), -above(p, b)))
+        deepest = max(-above(p, a), -above(p, b))
         if leans:
-            p.wrap_inset += p.wrap_grazes
+            p.wrap_inset = max(INSET, deepest + OVER) + p.wrap_grazes
+        else:
+            p.wrap_inset = max(INSET, deepest)
         for i in range(3):
             line[i] /= length
         first = -1
