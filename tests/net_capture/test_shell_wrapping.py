@@ -11,7 +11,7 @@ from fmu_src.net_capture.planes import P
 from fmu_src.net_capture.shapes import pieces, union
 from fmu_src.net_capture.shapes.hulls import INSET
 from fmu_src.net_capture.visit_list import make_visit_list
-from tests.net_capture.test_union_wrapping import THICK, box, laid
+from tests.net_capture.test_union_wrapping import box, laid
 from tests.net_capture.test_visits import BASE, BOOM, Seeker
 from tests.net_capture.ways_in_the_open import (
     HIDDEN,
@@ -212,16 +212,19 @@ def at(degrees, away, height):
     return turned(math.radians(degrees), away, height)
 
 
+def bent(body, faces, place):
+    """A visit over one edge, see `Drawn.lies`."""
+    return body, faces, place, place
+
+
 OVER_CORNERS = {
     "of one body": (
-        [(4, (4, 1), at(-22.0, 1.2955, 2.278), at(-22.0, 1.2955, 2.278))]
-        + [(4, (1, 2), at(-20.771, 1.298, 2.25), at(-20.771, 1.298, 2.25))],
+        [bent(4, (4, 1), at(-22.0, 1.2955, 2.278)), bent(4, (1, 2), at(-20.771, 1.298, 2.25))],
         ((0.55, -0.5, 2.28), at(-13.91, 1.3, 1.95)),
         ((0.5, -0.35, 2.28), at(-13.91, 1.3, 2.05)),
     ),
     "of two bodies": (
-        [(9, (4, 1), at(45.23, 1.2912, 2.278), at(45.23, 1.2912, 2.278))]
-        + [(10, (0, 1), at(48.46, 1.298, 2.2146), at(48.46, 1.298, 2.2146))],
+        [bent(9, (4, 1), at(45.23, 1.2912, 2.278)), bent(10, (0, 1), at(48.46, 1.298, 2.2146))],
         (at(30.93, 1.0656, 2.2845), at(60.91, 1.3039, 1.9707)),
         (at(45.6, 1.2218, 2.279), at(61.25, 1.33, 2.02)),
     ),
@@ -250,7 +253,7 @@ def test_a_way_held_at_the_end_of_an_edge_goes_over_to_no_body_through_others():
     would be shorter, through the cap."""
     seek, bodies = Drawn(FAIRING), bodies_and_faces(FAIRING)
     low, high = at(-89.91, 1.261, 2.232), at(-89.91, 1.2923, 2.278)
-    seek.lies([(0, (2, 3), low, low), (0, (3, 4), high, high)], 0.99502)
+    seek.lies([bent(0, (2, 3), low), bent(0, (3, 4), high)], 0.99502)
     way = seek(np.array((0.83583, -0.84831, 2.2297)) + BASE, at(-89.8722, 1.2974, 2.2854) + BASE, length=1.0)
     bends = seek.bends()
     assert way == pytest.approx(0.99502, abs=1e-4)
@@ -260,7 +263,7 @@ def test_a_way_held_at_the_end_of_an_edge_goes_over_to_no_body_through_others():
 def test_a_way_whose_bend_lies_as_deep_in_a_plate_as_ways_do_goes_round_that():
     """It has slid over a corner of the boom, past the ledge beside the plate's edge, and is held where its edge runs
     into that: as deep in the plate as ways lie, so whether that is in or out is rounding."""
-    tables = laid(BOOM, box((1.6, THICK, 1.0), (0.1, 0.0, 0.5)))
+    tables = laid(BOOM, box((1.6, 0.04, 1.0), (0.1, 0.0, 0.5)))
     seek, up, bodies = Drawn(tables), np.array(BOOM["position"]), bodies_and_faces(tables)
     first, last = np.array((-0.0145, 0.035, 0.018)) - up, np.array((-0.035, -0.0145, -0.0314)) - up
     b = np.array((0.0224, -0.1146, -0.1296)) - up + BASE
