@@ -26,6 +26,30 @@ APART = 1e-6
 """Metres of an edge from both ends, no less than that, where they are divided by."""
 
 
+def make_holds(hulls: Any) -> Any:
+    """Kernel `holds(p, body, point, within)`: whether a point lies in a body of a union (`shapes.Hulls`), as ways know
+    it, or above it by so much at most [m]; body axes [m].
+
+    Checked  tests/net_capture/test_visits.py
+    """
+    bodies_of, planes_of = hulls.bodies, hulls.planes
+
+    @kernel
+    def holds(p, body, point, within):
+        """Whether a point lies in a body.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        rows, planes = bodies_of(p), planes_of(p)
+        first = int(rows[body, FIRST])
+        for k in range(first, first + int(rows[body, NUMBER])):
+            if dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset > within:
+                return False
+        return True
+
+    return holds
+
+
 def make_hide(hulls: Any) -> Any:
     """Kernel `hide(p, j)` of edge number j of a way, among the bodies of a union (`shapes.Hulls`) that are listed in
     `wrap_others`; it does nothing for None, one body alone.
@@ -33,7 +57,7 @@ def make_hide(hulls: Any) -> Any:
     Checked  tests/net_capture/test_visits.py
     """
     several = hulls is not None
-    bodies_of, planes_of = (hulls.bodies, hulls.planes) if several else (None, None)
+    bodies_of, planes_of, holds = (hulls.bodies, hulls.planes, make_holds(hulls)) if several else (None, None, None)
 
     @kernel
     def crossing(p, j):
@@ -63,19 +87,11 @@ def make_hide(hulls: Any) -> Any:
 
         Checked  tests/net_capture/test_visits.py
         """
-        rows, planes = bodies_of(p), planes_of(p)
+        place = p.wrap_moving
+        for i in range(3):
+            place[i] = foot[i] + tau * edge[i]
         for n in range(p.wrap_others_near):
-            body = p.wrap_others[n]
-            if body == p.wrap_body:
-                continue
-            first = int(rows[body, FIRST])
-            within = True
-            for k in range(first, first + int(rows[body, NUMBER])):
-                above = dot(planes[k, 0:3], foot) + tau * dot(planes[k, 0:3], edge) - planes[k, 3] + p.wrap_inset
-                if above > DEEPER:
-                    within = False
-                    break
-            if within:
+            if p.wrap_others[n] != p.wrap_body and holds(p, p.wrap_others[n], place, DEEPER):
                 return True
         return False
 
@@ -136,7 +152,21 @@ def make_elsewhere(hulls: Any) -> Any:
     Checked  tests/net_capture/test_shell_wrapping.py
     """
     several = hulls is not None
-    bodies_of, planes_of = (hulls.bodies, hulls.planes) if several else (None, None)
+    bodies_of, planes_of, holds = (hulls.bodies, hulls.planes, make_holds(hulls)) if several else (None, None, None)
+
+    @kernel
+    def flush(p, body, point, face):
+        """Whether a body has a face in the plane of one of that in `wrap_planes`, at a point that lies on both.
+
+        Checked  tests/net_capture/test_shell_wrapping.py
+        """
+        rows, planes = bodies_of(p), planes_of(p)
+        first = int(rows[body, FIRST])
+        for k in range(first, first + int(rows[body, NUMBER])):
+            on = dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset > -PAST
+            if on and dot(planes[k, 0:3], p.wrap_planes[face, 0:3]) > 1.0 - ALIKE:
+                return True
+        return False
 
     @kernel
     def elsewhere(p, end, point, face):
@@ -145,22 +175,11 @@ def make_elsewhere(hulls: Any) -> Any:
         Checked  tests/net_capture/test_shell_wrapping.py
         """
         if several:
-            rows, planes = bodies_of(p), planes_of(p)
             for n in range(p.wrap_others_near):
                 body = p.wrap_others[n]
-                if body == p.wrap_body:
-                    continue
-                first = int(rows[body, FIRST])
-                within, apart = True, False
-                for k in range(first, first + int(rows[body, NUMBER])):
-                    above = dot(planes[k, 0:3], point) - planes[k, 3] + p.wrap_inset
-                    apart = apart or dot(planes[k, 0:3], end) - planes[k, 3] + p.wrap_inset > PAST
-                    same = above > -PAST and dot(planes[k, 0:3], p.wrap_planes[face, 0:3]) > 1.0 - ALIKE
-                    if above > PAST or same:
-                        within = False
-                        break
-                if within and apart:
-                    return True
+                if body != p.wrap_body and holds(p, body, point, PAST):
+                    if not holds(p, body, end, PAST) and not flush(p, body, point, face):
+                        return True
         return False
 
     return elsewhere
