@@ -20,11 +20,11 @@ import math
 from typing import Any, NamedTuple
 
 from fmu_src.net_capture import visit_list as of
-from fmu_src.net_capture.contact.section import FACES_MET, LEAN, WALL, make_section
+from fmu_src.net_capture.across import GRAZES, MARGIN, make_across
+from fmu_src.net_capture.contact.section import FACES_MET, LEAN, WALL
 from fmu_src.net_capture.lying import Lie
 from fmu_src.net_capture.near import BENT, FINE, JUMP, SHARE, WAY
 from fmu_src.net_capture.planes import P, X
-from fmu_src.net_capture.shapes.hulls import MIDDLE, RADIUS
 from fmu_src.net_capture.visits import make_visits
 from orbital.kernel import kernel
 from orbital.vectors import distance
@@ -42,10 +42,6 @@ LEAN_FIRST = SIDES.index(LEAN)
 """Where that order begins once a visit has ended: the way leans to where that was."""
 CORNERS = 24
 """Corners over which a way may slide in one substep."""
-MARGIN = 0.01
-"""Metres that a way may be longer than it was to be, for bodies that are near."""
-GRAZES = 2e-6
-"""Metres by which a piece of the way may lie deeper in a body than a way round it."""
 THROUGH = 1e-4
 """Metres by which it lies deeper where it has gone through: one that grazes is asked again a substep on."""
 LONGER = 1e-6
@@ -69,35 +65,12 @@ class Rounds(NamedTuple):
 def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
     """Kernels for the composition's target, behind so many whole numbers kept of each thread."""
     hulls, rubs = composition.target.shape.hulls, remember is not None
-    bodies_of, stand, reckon = hulls.bodies, lie.stand, lie.reckon
-    listed, cut = of.make_visit_list(), make_section(True).cut
-    recall, keep, name, owner, pass_through = listed.recall, listed.keep, listed.name, listed.owner, listed.remember
-    relax, length_of, ends, take, insert, replace = make_visits(hulls, lie, listed)
-
-    @kernel
-    def gather(p, way):
-        """List the bodies near a way of that length [m] from `wrap_from` to `wrap_to`; how far all others are, at least
-        [m].
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        rows = bodies_of(p)
-        clear = math.inf
-        p.wrap_others_near = 0
-        for body in range(rows.shape[0]):
-            squared = 0.0
-            for i in range(3):
-                away = 0.5 * (p.wrap_from[i] + p.wrap_to[i]) - rows[body, MIDDLE + i]
-                squared += away * away
-            off = math.sqrt(squared) - rows[body, RADIUS] - 0.5 * way
-            if off > 0.0:
-                clear = min(clear, off)
-            elif p.wrap_others_near < of.OTHERS:
-                p.wrap_others[p.wrap_others_near] = body
-                p.wrap_others_near += 1
-            else:
-                p.wrap_passed_slack += 1
-        return clear
+    stand, reckon = lie.stand, lie.reckon
+    listed = of.make_visit_list()
+    recall, keep, name, pass_through = listed.recall, listed.keep, listed.name, listed.remember
+    visits = make_visits(hulls, lie, listed)
+    relax, length_of, insert, replace = visits.relax, visits.length, visits.insert, visits.replace
+    gather, crossed, met = make_across(hulls, visits, listed)
 
     @kernel
     def take_up(p, work, words, place, a, b, at, reach):
@@ -120,66 +93,6 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         p.visits_lost = 0
         p.visits_left = 0
         return relax(p)
-
-    @kernel
-    def crosses(p, body, piece, edges, deeper):
-        """Whether a piece of the way goes through a body that is visited at neither of its ends; else `wrap_near` gets
-        no longer than how far it is from that, at least.
-
-        deeper    than a way round it                       [m]
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        for side in range(2):
-            v, _ = owner(p, piece + side)
-            if v >= 0 and p.visit_body[v] == body:
-                p.wrap_near = 0.0
-                return False
-        ends(p, piece, edges)
-        take(p, body)
-        p.wrap_grazes = deeper
-        first, _, _ = cut(p)
-        p.wrap_grazes = 0.0
-        if first < 0:
-            p.wrap_near = min(p.wrap_near, p.wrap_clear)
-        return first >= 0
-
-    @kernel
-    def crossed(p, body, edges, deeper):
-        """Piece of the way that goes through a body, -1: none does.
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        for piece in range(edges + 1):
-            if crosses(p, body, piece, edges, deeper):
-                return piece
-        return -1
-
-    @kernel
-    def met(p, edges, left):
-        """Piece of the way that goes through a body, and the place of that in `wrap_others`; -1 where there is none.
-        Bodies through which the thread has gone are forgotten where it is clear of them. `wrap_near` gets how far it is
-        from the others.
-
-        left    how many are asked
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        for n in range(left):
-            body = p.wrap_others[n]
-            through = -1
-            for s in range(p.visits_passed):
-                if p.visit_passed[s] == body:
-                    through = s
-            hit = crossed(p, body, edges, GRAZES)
-            if through < 0 and hit >= 0:
-                return hit, n
-            if through >= 0 and hit < 0:
-                p.visits_passed -= 1
-                p.visit_passed[through] = p.visit_passed[p.visits_passed]
-            elif through >= 0:
-                p.wrap_near = 0.0
-        return -1, -1
 
     @kernel
     def rate(p, work, a, b, edges):
