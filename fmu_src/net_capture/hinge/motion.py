@@ -62,6 +62,11 @@ TOO_FAST = fault(
     "hinge.stiffness",
     f"spring or dashpot of the hinge act within less than {1.0 / FASTEST:g} s on what they hold: their rate [1/s]",
 )
+TURNS_TOO_FAST = fault(
+    "hinge_turns_too_fast",
+    "hinge.start_rate",
+    f"hinge and rest of the target turn by more than {2.0 * FASTEST:g} rad/s together, too fast to follow: [rad/s]",
+)
 RECOVERY = 1.0
 """Per second: speed over overshoot at which the hinge comes back to its stop, small against any that it had."""
 
@@ -112,7 +117,7 @@ def make_hinge(composition: Any, touched: Any) -> Hinge:
 
     touched    kernel of its shape: whether the point of the surface found last belongs to the appendage
     """
-    too_fast = composition.code(TOO_FAST.name)
+    too_fast, turns_too_fast = composition.code(TOO_FAST.name), composition.code(TURNS_TOO_FAST.name)
     body_of, pieces_of = composition.table(BODY), composition.table("target.pieces")
 
     @kernel
@@ -186,6 +191,10 @@ def make_hinge(composition: Any, touched: Any) -> Hinge:
         if not rate <= (1.0 + 1e-9) * FASTEST:
             p.fault_value = rate
             return too_fast
+        rate = math.sqrt(dot(p.target_rate, p.target_rate)) + abs(p.hinge_start_rate)
+        if not rate <= 2.0 * FASTEST:
+            p.fault_value = rate
+            return turns_too_fast
         return 0
 
     @kernel
