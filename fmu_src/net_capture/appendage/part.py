@@ -124,7 +124,9 @@ PART = Term(
     "an appendage of the target that swings about a hinge with a spring and a dashpot",
     ROWS,
     needs=("target",),
-    excludes=("wrap", "force_map"),
+    excludes=("wrap",),
+    because=": threads bend round bodies that do not move against one another; leave [capture.wrap] out, and nodes "
+    "alone touch, or [capture.hinge] and each `hinged = true`, and the target is one rigid body",
     carries={"target": ("union",)},
     tables=(Table(BODY, "1", "masses of both bodies, the hinge, what holds at any angle, and what belongs to which"),),
     asked=ASKED,
