@@ -68,6 +68,8 @@ def make_touched(pieces_of: Any, away: Any) -> Any:
             x = point[0] - distance * normal[0] - row[5]
             y = point[1] - distance * normal[1] - row[6]
             z = point[2] - distance * normal[2] - row[7]
+            if math.sqrt(x * x + y * y + z * z) - row[17] >= nearest:
+                continue
             for i in range(3):
                 local[i] = row[8 + i] * x + row[11 + i] * y + row[14 + i] * z
             off = abs(away(row, own, local))
