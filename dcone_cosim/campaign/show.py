@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.campaign import intervals
-from dcone_cosim.campaign.answers import Answers, Distribution
+from dcone_cosim.campaign.answers import ROUNDING, Answers, Distribution
 from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.cases.statistics import Share
 from dcone_cosim.findings import Reading, reading
@@ -85,7 +85,7 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
     table.add_column("", overflow="fold", min_width=20)
     for head in HEADS:
         table.add_column(head, justify="right", no_wrap=True)
-    figures = {name: one for name, one in figures.items() if one["standard_deviation"] != 0.0}
+    figures = {name: one for name, one in figures.items() if one["standard_deviation"] > ROUNDING * abs(one["mean"])}
     rows = [(_headed(name, one), _cells(one)) for name, one in list(figures.items())[:MOST_FIGURES]]
     for name, cells in rows:
         table.add_row(Text(name), *cells)
