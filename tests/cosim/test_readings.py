@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -16,10 +18,12 @@ from dcone_cosim.cases.case import Value
 from dcone_cosim.cases.rows import Row, of_summary, unit_of
 from dcone_cosim.cases.statistics import summarise
 from dcone_cosim.cases.table import Entry, columns
+from dcone_cosim.cases.work import tell_summary
 from dcone_cosim.comparing.pairs import Pair
 from dcone_cosim.comparing.show import cells
 from dcone_cosim.findings import Finding, reading
 from dcone_cosim.report import tiles
+from dcone_cosim.reports import summary
 from dcone_cosim.units import by_name
 
 FIGURES = {
@@ -129,3 +133,14 @@ def test_a_row_of_before_is_read_by_its_unit() -> None:
     assert unit_of([old], "a.b") == ("rad", "")
     assert summarise([old]).figures["a.b"].read.name == "deg"
     assert unit_of([Row("k", "lost"), row()], "capture.speed") == ("m/s", "mm/s")
+
+
+def test_a_case_carries_the_units_of_its_summary(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(summary, "findings", lambda run: [finding(key) for key in FIGURES])
+    monkeypatch.setattr(summary, "warnings", lambda run: [])
+    scene = SimpleNamespace(name="s", title="t")
+    run: Any = SimpleNamespace(scene=scene, status="completed", message="", exit_code=0)
+    case: Any = SimpleNamespace(key="k")
+    made = tell_summary(case, run, {})
+    assert made.shown_in == row().shown_in
+    assert made.figures == row().figures
