@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from rich.console import Console
 
+from dcone_cosim import loads
 from dcone_cosim.campaign import show as of_campaigns
 from dcone_cosim.campaign.answers import distribution
 from dcone_cosim.cases import show as of_ensembles
@@ -138,6 +139,7 @@ def test_a_row_of_before_is_read_by_its_unit() -> None:
 def test_a_case_carries_the_units_of_its_summary(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(summary, "findings", lambda run: [finding(key) for key in FIGURES])
     monkeypatch.setattr(summary, "warnings", lambda run: [])
+    monkeypatch.setattr(loads, "judge", lambda run: None)
     scene = SimpleNamespace(name="s", title="t")
     run: Any = SimpleNamespace(scene=scene, status="completed", message="", exit_code=0)
     case: Any = SimpleNamespace(key="k")
