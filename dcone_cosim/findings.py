@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 SAMPLE = "~"
 """Before a figure that is one sample of many."""
@@ -16,7 +17,9 @@ SHOWN_IN = {
     "%": 1e-2,
     "MPa": 1e6,
     "mm/s": 1e-3,
+    "mm": 1e-3,
     "km": 1e3,
+    "\u00b5s": 1e-6,
     "m/day": 1.0 / 86400.0,
     "deg/s": math.pi / 180.0,
     "deg": math.pi / 180.0,
@@ -24,6 +27,37 @@ SHOWN_IN = {
     "yr": 365.25 * 86400.0,
 }
 """Units that a person reads more easily, and how much of the SI unit each is."""
+READ_IN = {"rad": "deg", "rad/s": "deg/s", "Pa": "MPa"}
+"""Units in which a person reads any figure that has not one of its own."""
+SMALL, FAR, SHORT = 1e-2, 1e4, 1e-3
+"""Lengths below and from which a person reads mm and km [m], and times below which microseconds [s]."""
+
+
+class Reading(NamedTuple):
+    """A unit as a person reads it, "" for a pure number, and how much of the SI unit it is."""
+
+    name: str
+    factor: float = 1.0
+
+    def from_si(self, value: float) -> float:
+        return value / self.factor
+
+
+def reading(unit: str, shown_in: str = "", size: float = math.nan) -> Reading:
+    """In which unit a person reads a figure: the one rule of all summaries, tables, pages and pictures.
+
+    unit        of the figure, SI
+    shown_in    the figure's own, one of `SHOWN_IN`; "" for none
+    size        of the figure in its unit; of several the mean, or the largest
+
+    Checked  tests/cosim/test_readings.py
+    """
+    name, size = shown_in or READ_IN.get(unit, ""), abs(size)
+    if not name and unit == "m" and (0.0 < size < SMALL or size >= FAR):
+        name = "mm" if size < SMALL else "km"
+    if not name and unit == "s" and 0.0 < size < SHORT:
+        name = "\u00b5s"
+    return Reading(name, SHOWN_IN[name]) if name else Reading("" if unit == "1" else unit)
 
 
 @dataclass(frozen=True)
@@ -35,7 +69,7 @@ class Finding:
     value       SI, or a text
     unit        SI, "" for a pure number or a text
     spread      standard deviation over mean of one sample of a chaotic figure, 0 for any other   [1]
-    shown_in    one of `SHOWN_IN`, in which a person reads it; "" for the SI unit
+    shown_in    one of `SHOWN_IN`, in which a person reads it; "" for that of `reading`
     """
 
     phase: str
@@ -51,10 +85,16 @@ class Finding:
         if isinstance(self.value, str):
             return self.value
         if isinstance(self.value, int) and not self.spread:
-            number = f"{self.value:d}"
-        else:
-            number = digits(self.value / (SHOWN_IN[self.shown_in] if self.shown_in else 1.0), self.spread)
-        return f"{SAMPLE if self.spread else ''}{number} {self.shown_in or self.unit}".rstrip()
+            return f"{self.value:d} {self.unit}".rstrip()
+        read = self.read
+        return f"{SAMPLE if self.spread else ''}{digits(read.from_si(self.value), self.spread)} {read.name}".rstrip()
+
+    @property
+    def read(self) -> Reading:
+        """The unit in which a person reads it, be it in a table of many."""
+        if isinstance(self.value, str | int):
+            return reading(self.unit, self.shown_in)
+        return reading(self.unit, self.shown_in, self.value)
 
 
 def spoken(value: float, spread: float = 0.0, most: int = PAGE) -> str:

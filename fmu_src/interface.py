@@ -77,7 +77,7 @@ class Term:
 
     variables   its rows; one of a name that the model has already takes that row's place
     needs    groups without a term of which it has nothing to act on
-    excludes groups with any term of which it cannot go together
+    excludes groups with any term of which it cannot go together;  because: why, and what to do, for a message
     carries  terms of other groups, by group, of which it goes with these alone
     lacks    variables that the model has otherwise, and that mean nothing with it
     states   outputs that are states with it: they begin with what their inputs say, and follow them over a step only
@@ -112,6 +112,7 @@ class Term:
     sources: tuple[Table, ...] = ()
     lay: Callable[[Mapping[str, float], Mapping[str, npt.NDArray[np.float64]]], Laid] | None = None
     follows: tuple[str, ...] = ()
+    because: str = ""
 
 
 class Undesigned(Exception):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -15,19 +15,16 @@ from dcone_cosim.campaign.engine import Made
 from dcone_cosim.campaign.figures import OPTIONAL
 from dcone_cosim.campaign.outcomes import TOLD_BY, answered, outcome, succeeded
 from dcone_cosim.campaign.spec import RANDOM, Spec
+from dcone_cosim.cases.rows import unit_of
 from dcone_cosim.cases.statistics import Share
 from dcone_cosim.cases.vary import in_si
+from dcone_cosim.findings import Reading, reading
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.units import Unit, by_name
 
 PERCENTS = (5.0, 50.0, 95.0, 99.0)
 """Percentiles that are told."""
 ROUNDING = 1e-12
 """Spread over mean of a figure that is the same in all cases [1]."""
-SHOWN_IN = {"rad": "deg", "rad/s": "deg/s", "Pa": "MPa"}
-"""Units of figures that a page has in others."""
-SMALL = 0.01
-"""Mean of a length below which a page has it in mm [m]."""
 MARGIN, DIAMETER, REQUIRED = "line.margin_of_safety", "tether.diameter", "line.diameter_required"
 
 
@@ -45,6 +42,7 @@ class Distribution:
     """A figure over the cases that have it.
 
     of        cases that have it;  lacking   those that give an answer and do not
+    own_unit  in which a person reads it, "" for none of its own
     """
 
     unit: str
@@ -53,6 +51,7 @@ class Distribution:
     mean: float
     deviation: float
     percentiles: tuple[Percentile, ...]
+    own_unit: str = ""
 
     @property
     def varies(self) -> bool:
@@ -60,10 +59,9 @@ class Distribution:
         return self.deviation > ROUNDING * abs(self.mean)
 
     @property
-    def shown_in(self) -> Unit:
-        """The unit in which a page has it."""
-        small = self.unit == "m" and abs(self.mean) < SMALL
-        return by_name("mm" if small else SHOWN_IN.get(self.unit, self.unit))
+    def shown_in(self) -> Reading:
+        """The unit in which a person reads it."""
+        return reading(self.unit, self.own_unit, self.mean)
 
 
 @dataclass
@@ -157,9 +155,9 @@ def _figures(
     for name in (name for name in names if name not in beside):
         values = [row.figures.get(name) for row in rows]
         numbers = [float(value) for value in values if isinstance(value, int | float) and math.isfinite(value)]
-        unit = next((row.units[name] for row in rows if name in row.units), "1")
+        unit, own = unit_of(rows, name)
         if numbers:
-            yield name, distribution(numbers, unit, len(rows) - len(numbers), confidence)
+            yield name, replace(distribution(numbers, unit, len(rows) - len(numbers), confidence), own_unit=own)
     for name, column in derived.items():
         numbers = [value for value in column if math.isfinite(value)]
         if numbers:

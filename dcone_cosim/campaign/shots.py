@@ -102,4 +102,5 @@ def _tell(case: Case, result: RunResult, timings: Mapping[str, float], kept: tup
     wanted = {*kept, *TOLD_BY}
     figures: dict[str, Any] = {name: value for name, value in row.figures.items() if name in wanted}
     units = {name: unit for name, unit in row.units.items() if name in figures}
-    return replace(row, figures=figures, units=units)
+    shown_in = {name: unit for name, unit in row.shown_in.items() if name in figures}
+    return replace(row, figures=figures, units=units, shown_in=shown_in)

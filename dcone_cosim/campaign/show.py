@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.campaign import intervals
-from dcone_cosim.campaign.answers import Answers, Distribution
+from dcone_cosim.campaign.answers import ROUNDING, Answers, Distribution
 from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.cases.statistics import Share
+from dcone_cosim.findings import Reading, reading
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -84,7 +85,7 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
     table.add_column("", overflow="fold", min_width=20)
     for head in HEADS:
         table.add_column(head, justify="right", no_wrap=True)
-    figures = {name: one for name, one in figures.items() if one["standard_deviation"] != 0.0}
+    figures = {name: one for name, one in figures.items() if one["standard_deviation"] > ROUNDING * abs(one["mean"])}
     rows = [(_headed(name, one), _cells(one)) for name, one in list(figures.items())[:MOST_FIGURES]]
     for name, cells in rows:
         table.add_row(Text(name), *cells)
@@ -99,12 +100,18 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
         console.print(f"and {len(figures) - MOST_FIGURES} more figures in summary.json", highlight=False)
 
 
+def _read(one: Mapping[str, Any]) -> Reading:
+    return reading(one["unit"], one.get("shown_in", ""), one["mean"])
+
+
 def _headed(name: str, one: Mapping[str, Any]) -> str:
-    return name if one["unit"] == "1" else f"{name} [{one['unit']}]"
+    unit = _read(one).name
+    return f"{name} [{unit}]" if unit else name
 
 
 def _cells(one: Mapping[str, Any]) -> list[str]:
-    numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
+    told = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
+    numbers = [_read(one).from_si(value) if isinstance(value, float) else value for value in told]
     return [cases(one["count"], one["lacking"]), *map(_number, numbers)]
 
 
@@ -150,6 +157,7 @@ def _interval(given: Sequence[float]) -> list[float | None]:
 def _distribution(one: Distribution) -> dict[str, Any]:
     return {
         "unit": one.unit,
+        **({"shown_in": one.own_unit} if one.own_unit else {}),
         "count": one.of,
         "lacking": one.lacking,
         "mean": one.mean,

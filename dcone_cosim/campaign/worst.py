@@ -11,6 +11,8 @@ from pathlib import Path
 from dcone_cosim.campaign.engine import Made
 from dcone_cosim.campaign.outcomes import answered, margin, outcome, succeeded
 from dcone_cosim.campaign.spec import Spec
+from dcone_cosim.cases.rows import unit_of
+from dcone_cosim.findings import reading
 
 OF_EACH = 2
 """Cases of each outcome that is no success."""
@@ -56,8 +58,8 @@ def worst(spec: Spec, made: Sequence[Made], folder: Path) -> list[Worth]:
         ]
         if having:
             value, number = max(having)
-            unit = next((one.row.units[name] for one in known if name in one.row.units), "1")
-            text = f"largest {name}: {value:.5g}" + ("" if unit == "1" else f" {unit}")
+            read = reading(*unit_of((one.row for one in known), name), value)
+            text = f"largest {name}: {read.from_si(value):.5g} {read.name}".rstrip()
             why.setdefault(-number, []).append(text)
     return [
         Worth(

@@ -65,7 +65,7 @@ def _figure(
     for axes, column in zip(grid.flat, shown, strict=False):
         _curves(axes, entries, places, second, column)
         _failures(axes, entries, places)
-        axes.set_ylabel(_labelled(column.name, column.unit), fontsize=8, parse_math=False)
+        axes.set_ylabel(_labelled(column.name, spoken(column.read.name)), fontsize=8, parse_math=False)
         if names:
             axes.set_xticks(range(len(names)), names, parse_math=False)
         else:
@@ -95,7 +95,7 @@ def _spread_decades(axes: Any, places: Sequence[float]) -> None:
 
 
 def _labelled(name: str, unit: str) -> str:
-    return name if unit == "1" else f"{name} [{unit}]"
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
 
 
 def _places(entries: Sequence[Entry], key: str, by_name: Mapping[str, Column]) -> tuple[list[float], list[str], str]:
@@ -114,7 +114,7 @@ def _places(entries: Sequence[Entry], key: str, by_name: Mapping[str, Column]) -
 
 def _curves(axes: Any, entries: Sequence[Entry], places: Sequence[float], second: str | None, column: Column) -> None:
     lines = list(dict.fromkeys(entry.varied[second].given if second else "" for entry in entries))
-    values = column.numbers()
+    values = [column.read.from_si(value) for value in column.numbers()]
     for number, line in enumerate(lines):
         chosen = [i for i, entry in enumerate(entries) if second is None or entry.varied[second].given == line]
         chosen = [i for i in chosen if entries[i].row.complete]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, OVERLOADED, SUCCESS
@@ -15,6 +16,7 @@ REFUSED = "refused"
 """Status of a case that could not begin: its values do not go together, or an FMU does not take them."""
 FAULT = "fault"
 """Status of a case that ended in a fault of this program; it is run again too."""
+NONE: Mapping[str, str] = MappingProxyType({})
 CLOCK = ("wall",)
 """Figures of a summary that are times of this computer."""
 
@@ -30,6 +32,7 @@ class Row:
     exit_code  that `dcone run` would have had
     figures    of the summary, by phase and key: "removal.tension_mean"; a text where one is told instead of a number
     units      of the numbers among them
+    shown_in   those in which a person reads them, where a figure has one of its own
     timings    CPU and wall time, of the case and of its phases [s]
     samples    by quantity what a case was run for beside that: numbers in lists
     """
@@ -42,6 +45,7 @@ class Row:
     units: Mapping[str, str] = field(default_factory=dict)
     timings: Mapping[str, float] = field(default_factory=dict)
     samples: Mapping[str, Any] = field(default_factory=dict)
+    shown_in: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def succeeded(self) -> bool:
@@ -80,7 +84,9 @@ def refused(key: str, why: str) -> Row:
     return Row(key, REFUSED, BAD_INPUT, why)
 
 
-def of_summary(key: str, summary: Mapping[str, Any], timings: Mapping[str, float]) -> Row:
+def of_summary(
+    key: str, summary: Mapping[str, Any], timings: Mapping[str, float], shown_in: Mapping[str, str] = NONE
+) -> Row:
     """The row of a run, from its summary for machines."""
     figures: dict[str, Figure] = {}
     units: dict[str, str] = {}
@@ -96,4 +102,10 @@ def of_summary(key: str, summary: Mapping[str, Any], timings: Mapping[str, float
             if "unit" in about:
                 units[f"{phase}.{name}"] = about["unit"]
     status, code, message = summary["status"], summary["exit_code"], summary["message"]
-    return Row(key, str(status), int(code), str(message), figures, units, times)
+    return Row(key, str(status), int(code), str(message), figures, units, times, shown_in=dict(shown_in))
+
+
+def unit_of(rows: Iterable[Row], name: str) -> tuple[str, str]:
+    """Unit of a figure that some rows have, and the one in which a person reads it, "" for none of its own."""
+    rows = [row for row in rows if name in row.units]
+    return (rows[0].units[name], rows[0].shown_in.get(name, "")) if rows else ("1", "")

@@ -35,19 +35,19 @@ def show_sweep(entries: Sequence[Entry], columns: Sequence[Column], title: str, 
         table.add_column(Text(_broken(key)), justify="right", overflow="fold")
     table.add_column("status", no_wrap=True)
     for column in shown:
-        table.add_column(Text(_broken(column.name, column.unit)), justify="right", overflow="fold")
+        table.add_column(Text(_broken(column.name, column.read.name)), justify="right", overflow="fold")
     for place, entry in enumerate(entries[:MOST_ROWS]):
         given = [Text(short(entry.varied[key].given)) for key in keys]
-        figures = [_number(column.values[place]) for column in shown]
+        figures = [_number(column.read_at(place)) for column in shown]
         table.add_row(*given, Text(entry.row.status), *figures)
     console.print(table)
     if len(entries) > MOST_ROWS:
         console.print(f"and {len(entries) - MOST_ROWS} more cases in the table", highlight=False)
 
 
-def _broken(name: str, unit: str = "1") -> str:
+def _broken(name: str, unit: str = "") -> str:
     """The head of a column on several lines, so that it is narrow."""
-    return name.replace(".", ".\n") + ("" if unit == "1" else f"\n[{unit}]")
+    return name.replace(".", ".\n") + (f"\n[{unit}]" if unit else "")
 
 
 def short(given: str) -> str:
@@ -76,12 +76,13 @@ def show_ensemble(summary: Summary, title: str, console: Console) -> None:
         if phase != previous:
             table.add_row(Text(phase, style="bold"))
             previous = phase
-        numbers = [f"{spread.mean:.5g}"]
+        read = spread.read
+        numbers = [f"{read.from_si(spread.mean):.5g}"]
         if spread.deviation > 0.0:
-            numbers += [f"{spread.deviation:.2g}", *(f"{value:.5g}" for value in spread.percentiles.values())]
+            numbers.append(f"{read.from_si(spread.deviation):.2g}")
+            numbers += [f"{read.from_si(value):.5g}" for value in spread.percentiles.values()]
         numbers += [""] * (5 - len(numbers))
-        unit = "" if spread.unit == "1" else spread.unit
-        table.add_row(Text(f"  {figure}{_lacking(spread)}"), *numbers, unit)
+        table.add_row(Text(f"  {figure}{_lacking(spread)}"), *numbers, read.name)
     console.print(table)
     for line in shares(summary):
         console.print(Text(line), highlight=False)
@@ -154,6 +155,7 @@ def _share(one: Share) -> dict[str, Any]:
 def _spread(one: Spread) -> dict[str, Any]:
     return {
         "unit": one.unit,
+        **({"shown_in": one.shown_in} if one.shown_in else {}),
         "count": one.count,
         "missing": one.missing,
         "not_finite": one.not_finite,

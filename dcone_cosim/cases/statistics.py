@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim.cases.rows import Row
+from dcone_cosim.cases.rows import Row, unit_of
 from dcone_cosim.errors import CAPTURE_FAILED
+from dcone_cosim.findings import Reading, reading
 
 CONFIDENCE = 0.95
 PERCENTILES = (5.0, 50.0, 95.0)
@@ -33,6 +34,7 @@ class Spread:
     deviation    standard deviation of one case, with n - 1 in the denominator; NaN for one case
     interval     in which the mean lies, by Student's t, at `CONFIDENCE`
     percentiles  by percent, linear between the samples
+    shown_in     unit in which a person reads the figure, "" for none of its own
     """
 
     unit: str
@@ -43,6 +45,12 @@ class Spread:
     deviation: float
     interval: tuple[float, float]
     percentiles: Mapping[float, float]
+    shown_in: str = ""
+
+    @property
+    def read(self) -> Reading:
+        """The unit in which a person reads it."""
+        return reading(self.unit, self.shown_in, self.mean)
 
 
 @dataclass(frozen=True)
@@ -89,7 +97,7 @@ def share(count: int, of: int, confidence: float = CONFIDENCE) -> Share:
     return Share(count, of, (max(low, 0.0) if count else 0.0, min(high, 1.0) if count < of else 1.0))
 
 
-def spread(values: Sequence[Any], unit: str = "1", confidence: float = CONFIDENCE) -> Spread:
+def spread(values: Sequence[Any], unit: str = "1", confidence: float = CONFIDENCE, *, shown_in: str = "") -> Spread:
     """Mean and spread of a figure; what is no number in `values` counts as missing.
 
     Checked  tests/cases/test_statistics.py
@@ -110,7 +118,7 @@ def spread(values: Sequence[Any], unit: str = "1", confidence: float = CONFIDENC
         half = float(stdtrit(count - 1, 0.5 + 0.5 * confidence)) * deviation / math.sqrt(count)
         interval = (mean - half, mean + half)
     missing, not_finite = len(values) - len(numbers), len(numbers) - count
-    return Spread(unit, count, missing, not_finite, mean, deviation, interval, percentiles)
+    return Spread(unit, count, missing, not_finite, mean, deviation, interval, percentiles, shown_in)
 
 
 def summarise(rows: Iterable[Row]) -> Summary:
@@ -123,8 +131,8 @@ def summarise(rows: Iterable[Row]) -> Summary:
     for name in names:
         values = [row.figures.get(name) for row in good]
         if any(isinstance(value, int | float) for value in values):
-            unit = next((row.units[name] for row in good if name in row.units), "1")
-            figures[name] = spread(values, unit)
+            unit, shown_in = unit_of(good, name)
+            figures[name] = spread(values, unit, shown_in=shown_in)
         told = Counter(value for value in values if isinstance(value, str))
         if 0 < len(told) <= MOST_TEXTS:
             texts[name] = {text: share(count, len(good)) for text, count in told.most_common()}

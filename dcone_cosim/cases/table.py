@@ -15,13 +15,15 @@ on however many processors it ran.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.cases.case import Value
-from dcone_cosim.cases.rows import Row
+from dcone_cosim.cases.rows import Row, unit_of
+from dcone_cosim.findings import Reading, reading
 from dcone_cosim.run_folder import csv_head
 
 if TYPE_CHECKING:
@@ -39,11 +41,23 @@ class Entry:
 
 @dataclass(frozen=True)
 class Column:
-    """A column; `values` are of one type, None where there is none."""
+    """A column; `values` are of one type, None where there is none; `shown_in` as a row has it."""
 
     name: str
     values: Sequence[Any]
     unit: str = "1"
+    shown_in: str = ""
+
+    @property
+    def read(self) -> Reading:
+        """The unit in which a person reads it: one for all its values."""
+        sizes = [abs(one) for one in self.values if isinstance(one, float) and math.isfinite(one)]
+        return reading(self.unit, self.shown_in, max(sizes, default=math.nan))
+
+    def read_at(self, place: int) -> Any:
+        """A value of it in that unit."""
+        value = self.values[place]
+        return self.read.from_si(value) if isinstance(value, float) else value
 
     def numbers(self) -> list[float]:
         """Its values, NaN where there is none."""
@@ -55,7 +69,7 @@ def columns(entries: Sequence[Entry]) -> list[Column]:
     found = [*_varied(entries), *_told(entries)]
     names = {column.name for column in found} | {"key"}
     for column in _figures([entry.row for entry in entries]):
-        found.append(Column(f"result.{column.name}", column.values, column.unit) if column.name in names else column)
+        found.append(replace(column, name=f"result.{column.name}") if column.name in names else column)
     return [*found, Column("key", [entry.row.key for entry in entries])]
 
 
@@ -83,8 +97,8 @@ def _figures(rows: Sequence[Row]) -> Iterable[Column]:
         is_number = any(value is not None for value in numbers)
         if is_number:
             whole = all(isinstance(value, int) for value in numbers if value is not None)
-            unit = next((row.units[name] for row in rows if name in row.units), "1")
-            yield Column(name, numbers if whole else [None if v is None else float(v) for v in numbers], unit)
+            floats = numbers if whole else [None if v is None else float(v) for v in numbers]
+            yield Column(name, floats, *unit_of(rows, name))
         if any(text is not None for text in texts):
             yield Column(f"{name}.told" if is_number else name, texts)
 

@@ -38,7 +38,7 @@ Telling = Callable[[Case, RunResult, Mapping[str, float]], Row]
 def tell_summary(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
     """The row of a run with all figures of its summary."""
     loads.judge(result)
-    return of_summary(case.key, summary.as_dict(result), timings)
+    return of_summary(case.key, summary.as_dict(result), timings, summary.shown_in(result))
 
 
 class Fleet:

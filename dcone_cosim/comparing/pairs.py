@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dcone_cosim.cases.rows import CLOCK
-from dcone_cosim.findings import Finding
+from dcone_cosim.findings import Finding, Reading, reading
 from dcone_cosim.reports import summary
 from dcone_cosim.results import RunResult
 from dcone_cosim.resume.differences import differences
@@ -24,6 +24,7 @@ class Pair:
     """A figure of both runs; None where a run has none.
 
     unit      SI, "" for a pure number or a text
+    shown_in  unit in which a person reads it, "" for none of its own
     scatter   standard deviation of the difference, where the figures are single samples of chaotic ones; 0 otherwise
     """
 
@@ -33,6 +34,13 @@ class Pair:
     other: float | int | str | None
     unit: str = ""
     scatter: float = 0.0
+    shown_in: str = ""
+
+    @property
+    def read(self) -> Reading:
+        """The unit in which a person reads both."""
+        sizes = [abs(value) for value in (self.one, self.other) if isinstance(value, float)]
+        return reading(self.unit, self.shown_in, max(sizes, default=math.nan))
 
     @property
     def difference(self) -> float | None:
@@ -97,7 +105,7 @@ def _pair(name: str, one: Finding | None, other: Finding | None, apart: bool) ->
     sizes = [abs(float(r.value)) * r.spread for r in (one, other) if r is not None and not isinstance(r.value, str)]
     scatter = math.hypot(*sizes) if apart else 0.0
     first, second = (None if r is None else r.value for r in (one, other))
-    return Pair(name, row.label, first, second, row.unit, scatter)
+    return Pair(name, row.label, first, second, row.unit, scatter, row.shown_in)
 
 
 def scene_keys(one: Scene, other: Scene) -> list[KeyPair]:

@@ -46,13 +46,16 @@ def show(found: Comparison, console: Console) -> None:
 
 def cells(row: Pair) -> tuple[str, str, str, str, str]:
     """Both values, their difference, the same in percent, and the unit."""
-    mark = SAMPLE if row.scatter else ""
-    one, other = (MISSING if v is None else v if isinstance(v, str) else f"{mark}{v:.6g}" for v in (row.one, row.other))
+    mark, read = SAMPLE if row.scatter else "", row.read
+    one, other = (
+        MISSING if v is None else v if isinstance(v, str) else f"{mark}{read.from_si(v):.6g}"
+        for v in (row.one, row.other)
+    )
     if row.difference is None:
-        return one, other, "", "", row.unit
-    scatter = f" +- {row.scatter:.2g}" if row.scatter else ""
+        return one, other, "", "", "" if isinstance(row.one, str) or isinstance(row.other, str) else read.name
+    scatter = f" +- {read.from_si(row.scatter):.2g}" if row.scatter else ""
     percent = "" if row.percent is None else f"{row.percent:+.3g}"
-    return one, other, f"{row.difference:+.4g}{scatter}", percent, row.unit
+    return one, other, f"{read.from_si(row.difference):+.4g}{scatter}", percent, read.name
 
 
 def as_dict(found: Comparison) -> dict[str, Any]:

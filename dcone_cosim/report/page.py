@@ -115,6 +115,7 @@ def of_folder(
             "tugs": list(tables(run)),
             "forces": None if forces is None else forces.hardest(),
             "force_picture": picture_of(folder / PICTURE),
+            "hinged": any("swing" in clip for clip in clips),
         }
     return pages.render("run.html", **values)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from dcone_cosim import loads
 from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN
-from dcone_cosim.findings import SHOWN_IN, Finding, spoken
+from dcone_cosim.findings import Finding, spoken
 from dcone_cosim.phases import kind_of
 from dcone_cosim.plots.style import time_axis
 from dcone_cosim.report.knobs import THRUST, signed
@@ -46,19 +46,14 @@ def cells(row: Finding) -> tuple[str, str]:
     """A figure and its unit, apart; a text has none."""
     if isinstance(row.value, str):
         return row.value, ""
-    unit = row.shown_in or row.unit
-    value = row.value / SHOWN_IN[row.shown_in] if row.shown_in else row.value
+    read = row.read
+    unit, value = read.name, read.from_si(row.value)
     if isinstance(row.value, int):
         digits = f"{row.value:,}" if abs(row.value) >= 10000 else str(row.value)
         if not row.spread:
             return digits, unit
         if abs(row.value) < COUNTED:
             return f"~{digits}", unit
-    size = abs(value)
-    if unit == "s" and 0.0 < size < 1e-3:
-        value, unit = value / 1e-6, "µs"
-    elif unit == "m" and size >= 1e4:
-        value, unit = value / 1e3, "km"
     return spoken(value, row.spread), SHOWN_AS.get(unit, unit)
 
 

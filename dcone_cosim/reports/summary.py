@@ -59,6 +59,11 @@ def as_dict(run: RunResult) -> dict[str, Any]:
     return content
 
 
+def shown_in(run: RunResult) -> dict[str, str]:
+    """Units in which a person reads figures that have one of their own, by PHASE.KEY."""
+    return {f"{row.phase}.{row.key}": row.shown_in for row in findings(run) if row.shown_in}
+
+
 def show(run: RunResult, console: Console) -> None:
     from rich.table import Table
     from rich.text import Text

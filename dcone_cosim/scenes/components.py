@@ -104,7 +104,8 @@ def _part_company(part: ReadComponent, model: build.Model, tables: Mapping[str, 
         clashes.setdefault(group_name, []).append(f"[{dotted((*part.path, other))}]")
     for group_name, others in clashes.items():
         part.refused.add(group_name)
-        group, text = model.groups[group_name], f"cannot go together with {' and '.join(others)}"
+        group = model.groups[group_name]
+        text = f"cannot go together with {' and '.join(others)}{group.terms[part.terms[group_name]].because}"
         if group_name in build.FAMILIES or group_name in part.following:
             mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
             part.terms.pop(group_name, None)
@@ -371,7 +372,7 @@ def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mist
     keys = [name.partition(".")[2] for name in (*part.keys, *part.files) if name.startswith(names[0] + ".")]
     keys += list(keys_of(part.lines[names[0]], part.keys)) if names[0] in part.lines else []
     keys += [group.selector for name, group in part.groups.items() if (group.table or name) == names[0]]
-    return unknown(path, value, "unknown key", key, keys)
+    return unknown(path, value, f"unknown key{part.instead(names[0], key, value)}", key, keys)
 
 
 def _group_that_has(part: ReadComponent, names: tuple[str, ...]) -> str | None:

@@ -69,6 +69,16 @@ class ReadComponent:
         """Whether a key chooses a term of our model."""
         return any(names == (group.table or name, group.selector) for name, group in self.groups.items())
 
+    def instead(self, table: str, key: str, value: object) -> str:
+        """Which key of a table chooses its term, in words, where one that is not known may have been meant for it: the
+        key that chooses in another table, or a value that is one of its terms; else nothing."""
+        elsewhere = {group.selector for model in build.CATALOGUE.values() for group in model.groups.values()}
+        for name, group in self.groups.items():
+            meant = key in elsewhere or (isinstance(value, str) and value in group.terms)
+            if (group.table or name) == table and len(group.terms) > 1 and meant:
+                return f": {group.selector} chooses, one of {', '.join(group.terms)}"
+        return ""
+
     def holds(self, table: str) -> bool:
         """Whether a name is that of a table of keys."""
         return table in self.lines or any(name.startswith(table + ".") for name in (*self.keys, *self.files))

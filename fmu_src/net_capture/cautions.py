@@ -9,7 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
+from fmu_src.net_capture.appendage import placed
 from fmu_src.net_capture.entered import by_the_end
+from fmu_src.net_capture.hinge.numbers import BODY
 from fmu_src.net_capture.implied import open_loop, substeps
 from fmu_src.net_capture.interface import GROUPS, TARGETS
 from fmu_src.net_capture.pull_off import PULLED, WAITING
@@ -55,6 +57,10 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
         yield from _long_steps(values, terms)
     if "self_contact" in terms:
         yield from _too_fast(values, terms)
+    if BODY in values:
+        bound, usual = substeps(values, terms)
+        ratio = values.get("solver.step_ratio", 0.0)
+        yield from placed.cautions(values, ratio * bound if ratio > 0.0 else usual)
 
 
 def _too_fast(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:

@@ -2,7 +2,9 @@
 
 The cells are those of the box round the target: of each of its six faces CELLS by CELLS. A point of the surface belongs
 to the face that it is nearest to, in half edges of the box. Faces are in the order +1, -1, +2, -2, +3, -3 of the body
-axes; within one the next axis runs faster than the one after it.
+axes; within one the next axis runs faster than the one after it. Of a target with a hinge both box and points are those
+with the hinge at angle 0, as the target is drawn: what presses on the appendage counts at one place of it, however it
+swings.
 
 The force of a cell is the mean over `stepping.MEASURE_INTERVAL`: so it is told alike under every law of contact, and of
 impacts too.
@@ -15,6 +17,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Term, Variable
+from fmu_src.net_capture.shapes.solids import HALF
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL
 from fmu_src.rows import state
 from orbital.kernel import kernel
@@ -22,6 +25,8 @@ from orbital.kernel import kernel
 CELLS = 4
 """Along either edge of a face."""
 NUMBER = 6 * CELLS * CELLS
+SOLID = "target.solid"
+"""Table of a union, with half the edges of its box."""
 
 
 class ForceMap(NamedTuple):
@@ -73,6 +78,9 @@ def centre_of(number: int, half: list[float]) -> list[float]:
 
 def make(composition: Any) -> ForceMap:
     """Kernels of the map."""
+    hinge = composition.target.hinge
+    swings = hinge is not None
+    as_drawn, solid_of = (hinge.as_drawn, composition.table(SOLID)) if swings else [None] * 2
 
     @kernel
     def start(p):
@@ -91,6 +99,10 @@ def make(composition: Any) -> ForceMap:
 
         Checked  tests/net_capture/test_force_map.py
         """
+        if swings:
+            as_drawn(p, point, p.hinge_room[5])
+            p.force_map_impulse[cell_of(p.hinge_room[5], solid_of(p)[HALF : HALF + 3])] += impulse
+            return
         p.force_map_impulse[cell_of(point, p.half_size)] += impulse
 
     @kernel

@@ -252,7 +252,7 @@ def make_target(composition: Any, part: Term) -> Target:
     uniform_inertia, measure_shape, shape_sample = shape.inertia, shape.measure, shape.sample
     given_otherwise, axes = shape.axes is not None, shape.axes
     swings = "hinge" in composition.terms
-    hinge = make_hinge(composition, shape.swings) if swings else None
+    hinge = make_hinge(composition, shape.swings, shape.close_round) if swings else None
     place_hinge, drift_hinge, measure_hinge, extent, follow = (
         (hinge.place, hinge.drift, hinge.measure, hinge.extent, hinge.follow) if hinge is not None else [None] * 5
     )

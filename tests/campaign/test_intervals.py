@@ -132,6 +132,14 @@ def test_a_table_says_of_how_many_cases(lacking: int, told: str) -> None:
     assert intervals.told(spec) == "95 % interval of Wilson"
 
 
+def test_a_table_has_no_figure_that_differs_by_rounding() -> None:
+    figures = {"a.same": (3.0, 3.0 + 4e-16), "a.differs": (3.0, 3.0001)}
+    made = [Made(n, (0.0,), Row(str(n), "completed", 0, "", {k: v[n] for k, v in figures.items()})) for n in (0, 1)]
+    content, out = show.as_dict(spec_of(BOUND), answers(spec_of(BOUND), made, {})), io.StringIO()
+    show.show("t", [], content["figures"], Console(file=out, width=160))
+    assert ("a.same" in out.getvalue(), "a.differs" in out.getvalue()) == (False, True)
+
+
 @pytest.mark.parametrize("width", [80, 160])
 def test_a_table_loses_no_digit(width: int) -> None:
     made = [Made(n, (0.0,), Row(str(n), "completed", 0, "", {"removal.peak": 1.2345e-5 * n})) for n in range(1, 9)]

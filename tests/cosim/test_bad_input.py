@@ -52,6 +52,8 @@ def changed(scene: str, old: str, new: str) -> str:
         ("mission", 'trigger = "time"', 'trigger = "tome"', ["closing.trigger", "time, first_contact"]),
         # unknown keys, tables, terms
         ("mission", 'side = "12 m"', 'sied = "12 m"', ["capture.net.sied", "unknown key", "'side'"]),
+        ("detumbling", 'body = "box"', 'shape = "box"', ["target.shape", "body chooses", "point, rigid, box"]),
+        ("mission", 'law = "locked"', 'law = "locked"\nbody = "x"', ["removal.reel.body", "law chooses", "linear"]),
         ("mission", "[capture.bullets]", "[capture.bulets]", ["capture.bulets", "'bullets'"]),
         ("mission", "[orbit]", "[orbti]", ["orbti", "'orbit'"]),
         ("mission", 'law = "hill"', 'law = "hil"', ["capture.gravity.law", '"hil"', "none, hill"]),

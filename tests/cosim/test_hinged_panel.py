@@ -56,8 +56,10 @@ def test_the_scene_that_is_shipped() -> None:
         (lambda s: s.replace('mass = "700 kg"', 'mass = "700 kg"\nhinged = true'), "must not be hinged"),
         (lambda s: s.replace("axis = [1.0, 0.0, 0.0]", "axis = [0.0, 0.0, 0.0]"), "must be a direction"),
         (lambda s: s.replace('start_rate = "10 deg/s"', 'start_angle = "91 deg"'), "within hinge.limit, 90 deg"),
-        (lambda s: s.replace("[capture.contact]", "[capture.wrap]\n\n[capture.contact]"), "cannot go together"),
-        (lambda s: s.replace("[capture.contact]", "[capture.force_map]\n\n[capture.contact]"), "cannot go together"),
+        (
+            lambda s: s.replace("[capture.contact]", "[capture.wrap]\n\n[capture.contact]"),
+            "cannot go together with [capture.wrap]: threads bend round bodies that do not move against one",
+        ),
         (lambda s: s + TOW, "is held fast by the removal that follows, which needs for it"),
         (without_hinge, "piece 2 says `hinged = true`, which needs the table [capture.hinge]"),
         (
@@ -65,7 +67,7 @@ def test_the_scene_that_is_shipped() -> None:
             "they follow from the pieces of both bodies",
         ),
     ],
-    ids=["none", "all", "axis", "beyond", "wrap", "force_map", "removal", "no hinge", "inertia"],
+    ids=["none", "all", "axis", "beyond", "wrap", "removal", "no hinge", "inertia"],
 )  # fmt: skip
 def test_what_does_not_go_with_it_is_refused(tmp_path: Path, change, said: str) -> None:  # type: ignore[no-untyped-def]
     assert said in refused(tmp_path, change(text()))

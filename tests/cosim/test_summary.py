@@ -384,5 +384,5 @@ def test_every_unit_that_a_person_reads_is_as_large_as_astropy_has_it() -> None:
     import astropy.units as u
 
     si = {"%": u.one, "MPa": u.Pa, "mm/s": u.m / u.s, "km": u.m, "m/day": u.m / u.s, "deg/s": u.rad / u.s, "deg": u.rad}
-    si |= {"day": u.s, "yr": u.s}
+    si |= {"day": u.s, "yr": u.s, "mm": u.m, "µs": u.s}
     assert {name: u.Unit(name).to(si[name]) for name in SHOWN_IN} == pytest.approx(SHOWN_IN, rel=1e-14)

@@ -101,6 +101,19 @@ def test_faster_than_can_be_followed_is_refused(name, power, unit):
         Instance(MODEL, terms, given, tables).initialise()
 
 
+@pytest.mark.parametrize("rates", [{"hinge.start_rate": -1.0}, {"target.start_rate[2]": 1.0}])
+def test_an_fmu_that_turns_too_fast_to_follow_does_not_begin(rates):
+    """The hinge's or the rest's: in place of going on for ever."""
+    terms, given, tables = composed()
+    for factor in (1.99, 2.01):
+        instance = Instance(MODEL, terms, given | {name: one * factor * FASTEST for name, one in rates.items()}, tables)
+        if factor > 2.0:
+            with pytest.raises(ModelFault, match=r"turn by more than 200000 rad/s together"):
+                instance.initialise()
+        else:
+            instance.initialise()
+
+
 def test_its_extremes_are_asked_of_a_scene():
     main = load("hinged-panel").phases[0].main
     names = [one.name for one in build.extremes("net_capture", main.terms) if one.name.startswith("hinge")]

@@ -1,6 +1,7 @@
 """Contact with a target whose appendage swings: impulses and forces on either body, against two bodies that constraints
 hold together; what follows the angle; a capture with all momenta kept."""
 
+import itertools
 import math
 
 import numpy as np
@@ -9,10 +10,13 @@ from scipy.spatial.transform import Rotation
 
 from fmu_src.implied import formula
 from fmu_src.instance import Instance
+from fmu_src.net_capture import force_map
+from fmu_src.net_capture.appendage import laying
 from fmu_src.net_capture.hinge import numbers as at
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import SHOWN, SHOWN_RATE, P, U, X
-from fmu_src.net_capture.shapes import pieces, union
+from fmu_src.net_capture.shapes import pieces, solids, union
+from fmu_src.net_capture.shapes.nearest import close_round
 from orbital.kernel import kernel
 from tests.conftest import CAPTURE
 from tests.net_capture.on_target import Kernels
@@ -40,7 +44,8 @@ SPOTS = {
 @pytest.fixture(scope="module")
 def laws():
     tables, _ = tables_of()
-    return {name: Kernels(TERMS | {"contact": name}, tables) for name in ("inelastic", "penalty")}
+    terms = TERMS | {"force_map": "plain"}
+    return {name: Kernels(terms | {"contact": name}, tables) for name in ("inelastic", "penalty")}
 
 
 class Hit:
@@ -55,6 +60,9 @@ class Hit:
         place, turn, v, w = two.parts(y)[self.body]
         piece = Rotation.from_quat(WING[number].get("attitude", [1.0, 0.0, 0.0, 0.0]), scalar_first=True)
         where = np.array(WING[number].get("position", [0.0, 0.0, 0.0])) + piece.apply(own) - two.centres[self.body]
+        drawn = np.array(WING[number].get("position", [0.0, 0.0, 0.0])) + piece.apply(own)
+        design, centre = body_turn(self.tables)
+        self.drawn = design.inv().apply(drawn - centre)
         arm, self.out = turn.apply(where), turn.apply(piece.apply(out))
         self.at, self.surface = place + arm, v + np.cross(w, arm)
         along = np.cross(self.out, [0.3, 0.5, -0.7])
@@ -65,6 +73,16 @@ class Hit:
         self.gained = two.solve(y, forces, two.constraints(y)[0], np.zeros(5))
         self.feel = 1.0 / NODE + forces @ self.gained
         self.scene.put([NODE], [self.at + off * self.out], [self.speed])
+
+    def pressed(self):
+        """Cells of the force map that bore anything, with what they bore [N s]."""
+        cells = self.scene.p["force_map_impulse"]
+        return {int(number): float(cells[number]) for number in np.flatnonzero(cells)}
+
+    def cell(self):
+        """Where the point is as the target is drawn."""
+        half = self.tables["target.solid"][solids.HALF : solids.RADIUS]
+        return force_map.cell_of.py_func(self.drawn, half)
 
     def momenta(self):
         """Linear and angular momentum of node and target, and their kinetic energy without the spring's."""
@@ -88,6 +106,9 @@ def test_an_impact_gives_both_bodies_and_the_hinge_what_constraints_say(laws, sp
     impulse = (1.0 + restitution) * 2.0 / hit.feel
     assert scene.p["contact_impulse"] == pytest.approx(impulse, rel=1e-5 if restitution else 0.4)
     impulse = float(scene.p["contact_impulse"])  # one that stops it lets it land on the surface
+    assert hit.pressed() == {hit.cell(): pytest.approx(impulse, rel=1e-12)}
+    corners = laying.corners_at(hit.tables, float(scene.p["hinge_now"][6]))
+    np.testing.assert_allclose(scene.p["half_size"], np.abs(corners).max(axis=0), atol=1e-12)
     if restitution == 0.0:
         scene.go(step, 1)
         impulse = float(scene.p["contact_impulse"])
@@ -103,6 +124,56 @@ def test_an_impact_gives_both_bodies_and_the_hinge_what_constraints_say(laws, sp
     np.testing.assert_allclose(after, before, atol=1e-12 * np.abs(before).max())
     assert scene.p["contact_loss"] == pytest.approx(0.5 * (1.0 - restitution**2) * 4.0 / hit.feel, abs=1e-4)
     assert energy - left == pytest.approx(scene.p["contact_loss"], abs=1e-4)
+
+
+@pytest.mark.parametrize("kind", range(5))
+def test_the_box_that_holds_pieces_holds_boxes_round_them(kind):
+    """Of each kind askew, and of two."""
+    sizes = {
+        "box": {"size": [1.0, 2.0, 0.3]},
+        "cylinder": {"radius": 0.3, "length": 1.7},
+        "sphere": {"radius": 0.6},
+        "frustum": {"radius_bottom": 0.2, "radius_top": 0.5, "length": 1.1},
+        "shell": {"radius": 0.7, "length": 1.3, "thickness": 0.1},
+    }[pieces.KINDS[kind]]
+    turn = Rotation.from_rotvec([0.4, -0.7, 0.3]).as_quat(scalar_first=True).tolist()
+    askew = {"shape": kind, "mass": 2.0, "position": [0.3, -0.2, 0.4], "attitude": turn, **sizes}
+    entries = [askew, {"shape": pieces.BOX, "size": [0.2, 0.2, 4.0], "mass": 1.0, "position": [0.1, 0.0, 0.0]}]
+    whole = solids.Solid(1.0, np.ones(3), np.eye(3), np.zeros(3))
+    for some in (entries, entries[:1]):
+        found = pieces.pieces(np.array(pieces.gather(some)))
+        half, signs = np.empty(3), np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+        formula(close_round)(half, union.pieces_table(found, whole))
+        corners = [piece.place + signs * pieces.half_of(piece) @ piece.turn.T for piece in found]
+        np.testing.assert_allclose(half, np.abs(np.vstack(corners)).max(axis=0), rtol=1e-14)
+
+
+def test_cells_of_the_force_map_are_those_of_the_target_as_drawn(laws):
+    """Whatever the angle: points over faces of body and wing, each in the cell in which it is with the hinge at 0."""
+    scene, tables, _ = moving(laws["inelastic"], rate=RATE, start_angle=ANGLE, start_rate=SPEED)
+    parts = laws["inelastic"].bench.parts
+    distance, add = parts.target.shape.distance, parts.force_map.add
+
+    @kernel
+    def press(record, normal, point):
+        p = record[0]
+        distance(p, normal, point)
+        add(p, point, 1.0)
+
+    now, drawn = (list(union.in_body_axes(laying.pieces_at(tables, angle))) for angle in (ANGLE, 0.0))
+    half, grid = tables["target.solid"][solids.HALF : solids.RADIUS], np.linspace(-0.99, 0.99, 9)
+    moved = 0
+    for number in (0, 2):
+        for axis, side, x, y in itertools.product(range(3), (-1.0, 1.0), grid, grid):
+            own = 0.5 * np.roll([side, x, y], axis) * now[number].sizes[:3]
+            at, meant = (one[number].place + one[number].turn @ own for one in (now, drawn))
+            scene.p["force_map_impulse"][:] = 0.0
+            press(scene.record, np.empty(3), at)
+            (cell,) = np.flatnonzero(scene.p["force_map_impulse"])
+            if number == 0 or scene.p["hinge_touched"] == 1:
+                assert cell == force_map.cell_of.py_func(meant, half)
+                moved += cell != force_map.cell_of.py_func(at, half)
+    assert moved > 50
 
 
 @pytest.mark.parametrize("spot", SPOTS)

@@ -102,6 +102,7 @@ def test_every_scheme_of_a_net_meets_every_extreme_of_its_parts() -> None:
     names = [one.name for one in extremes]
     assert len(set(names)) == len(names)
     assert {"restitution 1", "spin of 60 deg/s", "cord 10000 times as stiff", "net of 10 mg"} <= set(names)
+    assert "slack of a folded net wound on a stiff cord" in names
     assert {"macro steps of 1e-06 s", "macro steps of 100 s"} <= set(names)
 
 

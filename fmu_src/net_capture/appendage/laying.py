@@ -66,6 +66,9 @@ def lay(values: Mapping[str, float], sources: Mapping[str, Array]) -> Laid:
     place, axis = (np.array([values[f"hinge.{name}[{i}]"] for i in (1, 2, 3)]) for name in ("position", "axis"))
     if not axis.any():
         raise Undesigned("hinge.axis", "[0, 0, 0]", "must be a direction, of any length, in the target's design axes")
+    if values["hinge.limit"] == 0.0:
+        expected = "must be greater than 0: a hinge that cannot turn is none (leave [capture.hinge] and `hinged` out)"
+        raise Undesigned("hinge.limit", "0 deg", expected)
     made = lay_union(values, sources).tables
     key = (rows.tobytes(), rows.shape, place.tobytes(), axis.tobytes(), float(values["hinge.limit"]))
     return Laid({at.BODY: _table(*key, made["target.samples"].tobytes())}, {})

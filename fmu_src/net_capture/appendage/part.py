@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.appendage.laying import lay, lightest
-from fmu_src.net_capture.hinge.motion import FASTEST, TOO_FAST
+from fmu_src.net_capture.hinge.motion import FASTEST, TOO_FAST, TURNS_TOO_FAST
 from fmu_src.net_capture.hinge.numbers import BODY, MOST_PIECES
 from fmu_src.net_capture.hinge.numbers import LIMIT as AT_LIMIT
 from fmu_src.net_capture.refusal import Refusal, Scene, text
@@ -95,6 +95,14 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         float(scene.values[BODY][AT_LIMIT]) if BODY in scene.values else math.pi,
         scene.values["hinge.start_angle"],
     )
+    for name, turning in (
+        ("hinge.start_rate", [float(scene.values["hinge.start_rate"])]),
+        ("target.start_rate", scene.vector("target.start_rate")),
+    ):
+        if math.hypot(*turning) > FASTEST:
+            told = [math.degrees(one) for one in turning]
+            expected = f"must be at most {math.degrees(FASTEST):.3g} deg/s beside a hinge, whose steps follow it"
+            yield Refusal(name, text(told, " deg/s") if len(told) > 1 else f"{told[0]:g} deg/s", expected)
     if abs(start) > limit:
         expected = f"must be within hinge.limit, {math.degrees(limit):.4g} deg"
         yield Refusal("hinge.start_angle", f"{math.degrees(start):.4g} deg", expected)
@@ -116,12 +124,14 @@ PART = Term(
     "an appendage of the target that swings about a hinge with a spring and a dashpot",
     ROWS,
     needs=("target",),
-    excludes=("wrap", "force_map"),
+    excludes=("wrap",),
+    because=": threads bend round bodies that do not move against one another; leave [capture.wrap] out, and nodes "
+    "alone touch, or [capture.hinge] and each `hinged = true`, and the target is one rigid body",
     carries={"target": ("union",)},
     tables=(Table(BODY, "1", "masses of both bodies, the hinge, what holds at any angle, and what belongs to which"),),
     asked=ASKED,
     lay=lay,
-    faults=(TOO_FAST,),
+    faults=(TOO_FAST, TURNS_TOO_FAST),
     make=lambda composition: None,
     refuses=refuses,
     extremes=EXTREMES,

@@ -142,4 +142,16 @@ EXTREMES = (
         "energy_gained",
         {"closing.trigger": TRIGGER_TIME, "closing.time": 0.0},
     ),
+    Extreme(
+        "slack of a folded net wound on a stiff cord",
+        "the reels wind all that is loose of the cord, which then goes taut at their full speed",
+        "energy_gained",
+        {
+            "closing.trigger": TRIGGER_TIME,
+            "closing.time": 0.0,
+            "closing.slack": 1,
+            "closing.axial_stiffness": times("closing.axial_stiffness", 1e2),
+        },
+        chief=True,
+    ),
 )

@@ -20,6 +20,7 @@ class Meeting(NamedTuple):
     push: Any
     along_own: Any
     along_body: Any
+    as_drawn: Any
 
 
 def make_meeting(composition: Any, touched: Any) -> Meeting:
@@ -131,4 +132,22 @@ def make_meeting(composition: Any, touched: Any) -> Meeting:
         if touched(p):
             turned(vector, body_of(p)[AXIS : AXIS + 3], p.hinge_now[4], p.hinge_now[5], vector)
 
-    return Meeting(take, swing, along, feel, push, along_own, along_body)
+    @kernel
+    def as_drawn(p, point, out):
+        """out = where a point of the body found nearest is with the hinge at angle 0 [m], body axes (3,).
+
+        point         from the centre of mass, body axes            [m]  (3,)
+
+        Checked  tests/net_capture/test_force_map.py
+        """
+        body, y = body_of(p), p.hinge_now
+        for i in range(3):
+            out[i] = point[i] + p.hinge_shift[i]
+        if touched(p):
+            for i in range(3):
+                out[i] -= body[HINGE + i]
+            turned(out, body[AXIS : AXIS + 3], y[4], -y[5], out)
+            for i in range(3):
+                out[i] += body[HINGE + i]
+
+    return Meeting(take, swing, along, feel, push, along_own, along_body, as_drawn)

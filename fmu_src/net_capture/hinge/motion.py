@@ -62,6 +62,11 @@ TOO_FAST = fault(
     "hinge.stiffness",
     f"spring or dashpot of the hinge act within less than {1.0 / FASTEST:g} s on what they hold: their rate [1/s]",
 )
+TURNS_TOO_FAST = fault(
+    "hinge_turns_too_fast",
+    "hinge.start_rate",
+    f"hinge and rest of the target turn by more than {2.0 * FASTEST:g} rad/s together, too fast to follow: [rad/s]",
+)
 RECOVERY = 1.0
 """Per second: speed over overshoot at which the hinge comes back to its stop, small against any that it had."""
 
@@ -83,6 +88,7 @@ class Hinge(NamedTuple):
     push(p, impulse)             give the target that impulse [N s] with the opposite sign, to its rates and the hinge
     along_own(p, vector), along_body(p, vector)   from the body axes to those that the body touched had at angle 0, and
                                  back
+    as_drawn(p, point, out)      where that point is with the hinge at angle 0 [m]
     reach(p)                     largest way of a point per radian of the hinge [m]
     largest_share(p)             what an impulse gives at most where it acts, over what it gives the centre of mass [1]
     lean(p, up, given)           give the hinge what a central field gives it; given is 3 mu/r^3 times a time [1/s], up
@@ -102,17 +108,19 @@ class Hinge(NamedTuple):
     push: Any
     along_own: Any
     along_body: Any
+    as_drawn: Any
     reach: Any
     largest_share: Any
     lean: Any
 
 
-def make_hinge(composition: Any, touched: Any) -> Hinge:
+def make_hinge(composition: Any, touched: Any, close_round: Any) -> Hinge:
     """Kernels for the composition's target.
 
-    touched    kernel of its shape: whether the point of the surface found last belongs to the appendage
+    touched      kernel of its shape: whether the point of the surface found last belongs to the appendage
+    close_round  kernel of its shape: the box that holds pieces as they are now
     """
-    too_fast = composition.code(TOO_FAST.name)
+    too_fast, turns_too_fast = composition.code(TOO_FAST.name), composition.code(TURNS_TOO_FAST.name)
     body_of, pieces_of = composition.table(BODY), composition.table("target.pieces")
 
     @kernel
@@ -150,6 +158,7 @@ def make_hinge(composition: Any, touched: Any) -> Hinge:
                         moved[8 + 3 * i + j] = at[i]
             for i in range(3):
                 moved[5 + i] -= p.hinge_shift[i]
+        close_round(p.half_size, p.hinge_rows[0 : rows.shape[0]])
 
     @kernel
     def fastest(p):
@@ -186,6 +195,10 @@ def make_hinge(composition: Any, touched: Any) -> Hinge:
         if not rate <= (1.0 + 1e-9) * FASTEST:
             p.fault_value = rate
             return too_fast
+        rate = math.sqrt(dot(p.target_rate, p.target_rate)) + abs(p.hinge_start_rate)
+        if not rate <= 2.0 * FASTEST:
+            p.fault_value = rate
+            return turns_too_fast
         return 0
 
     @kernel

@@ -40,6 +40,7 @@ class Shape(NamedTuple):
     hulls                           the convex bodies of which a shape with hollows is made, where threads bend;
                                     None: none
     swings(p)                       whether the point of the surface found last belongs to an appendage that swings
+    close_round(half, rows)         half the edges of the box that holds pieces some of which swing, as they are now [m]
     """
 
     samples: int
@@ -51,6 +52,7 @@ class Shape(NamedTuple):
     faces: Any = None
     hulls: Hulls | None = None
     swings: Any = None
+    close_round: Any = None
 
 
 class Checks(NamedTuple):

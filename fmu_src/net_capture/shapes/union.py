@@ -22,7 +22,7 @@ from fmu_src.net_capture.shapes import pieces as of
 from fmu_src.net_capture.shapes.box import box_distance
 from fmu_src.net_capture.shapes.cylinder import cylinder_distance
 from fmu_src.net_capture.shapes.frustum import frustum_distance
-from fmu_src.net_capture.shapes.nearest import NOT_ASKED, make_touched
+from fmu_src.net_capture.shapes.nearest import NOT_ASKED, close_round, make_touched
 from fmu_src.net_capture.shapes.shell import shell_distance
 from fmu_src.net_capture.shapes.sphere import sphere_distance
 from fmu_src.rows import state
@@ -197,7 +197,9 @@ def make(composition: Any) -> Shape:
 
     solid = samples.make_solid(composition, plain_distance)._replace(distance=distance)
     if "hinge" in composition.terms:
-        return solid._replace(distance=distance_now, swings=make_touched(pieces_of, piece_distance))
+        return solid._replace(
+            distance=distance_now, swings=make_touched(pieces_of, piece_distance), close_round=close_round
+        )
     if "wrap" not in composition.terms:
         return solid
     return solid._replace(hulls=Hulls(composition.table(BODIES), composition.table(PLANES)))
