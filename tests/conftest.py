@@ -1,8 +1,10 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
 import gc
+import importlib
 import os
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -76,6 +78,17 @@ def pytest_configure(config: pytest.Config) -> None:
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         kernels.keep()
         gc.disable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection(session: pytest.Session) -> Iterator[None]:
+    """Of two workers one reads the tests from their end: in a fresh checkout each compiles half of them, and finds the
+    bytecode of the others."""
+    if getattr(session.config, "workerinput", {}).get("workerid") == "gw1" and session.config.args == ["tests"]:
+        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+            with suppress(Exception, pytest.skip.Exception):  # told where the tests are collected
+                importlib.import_module(".".join(path.relative_to(session.config.rootpath).with_suffix("").parts))
+    return (yield)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
