@@ -31,7 +31,7 @@ Path(out).write_text(compile._lower(module, json.loads(terms), Path(kept)))
     [
         ("reel_control", {}),
         pytest.param("net_capture", CAPTURE, marks=pytest.mark.evidence),
-        pytest.param("tethered_deorbit", {"reel": "locked", "bodies": "rigid"}, marks=pytest.mark.evidence),
+        pytest.param("tethered_deorbit", {"reel": "locked", "thrust": "along_track"}, marks=pytest.mark.evidence),
     ],
 )
 def test_the_text_is_that_of_numba_as_it_comes(name, terms, tmp_path):
