@@ -146,7 +146,7 @@ def test_windows_library_shows_the_interface_alone(library):
 def test_clang_runs_where_its_own_files_are(monkeypatch, tmp_path):
     """It tells C libraries apart by paths seen from where it runs: from above its files it would build them anew."""
     told = []
-    monkeypatch.setattr(tools, "run", lambda what, command, place: told.append((command, place)))
+    monkeypatch.setattr(tools, "run", lambda what, command, environment, place: told.append((command, place)))
     monkeypatch.chdir(tmp_path)
     link.clang(["-c", Path("a.c"), "-o", tmp_path / "a.o", "-lm"])
     ((command, place),) = told
