@@ -1,8 +1,10 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
 import gc
+import importlib
 import os
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -35,30 +37,43 @@ FLOWN_MOST = (
 DEAREST = (
     "tests/consistency/test_readme.py",
     "tests/net_capture/test_union_wrapping.py",
+    "tests/net_capture/test_shell_wrapping.py",
+    "tests/interop/test_tools.py",
+    "tests/campaign/test_commands.py",
+    "tests/net_capture/test_hinged_contact.py",
+    "tests/net_capture/test_free_flight.py",
     "tests/net_capture/test_contact.py",
     "tests/cosim/test_isolation.py",
-    "tests/report/test_live.py",
-    "tests/interop/test_tools.py",
     "tests/packaging/test_platforms.py",
-    "tests/net_capture/test_free_flight.py",
-    "tests/cosim/test_swapped_in.py",
-    "tests/campaign/test_commands.py",
-    "tests/tethered_deorbit/test_rigid.py",
-    "tests/net_capture/test_shapes.py",
-    "tests/cosim/test_built_fmus.py",
-    "tests/cosim/test_kills.py",
-    "tests/tethered_deorbit/test_way.py",
-    "tests/net_capture/test_wrapping.py",
+    "tests/report/test_live.py",
     "tests/net_capture/test_schemes.py",
-    "tests/cases/test_beginnings.py",
-    "tests/packaging/test_fmu.py",
-    "tests/cosim/test_ssp_export.py",
     "tests/cases/test_commands.py",
+    "tests/tethered_deorbit/test_way.py",
+    "tests/cosim/test_swapped_in.py",
+    "tests/net_capture/test_hooked_threads.py",
+    "tests/cosim/test_kills.py",
+    "tests/net_capture/test_capstan.py",
+    "tests/cosim/test_built_fmus.py",
+    "tests/net_capture/test_wrapping.py",
+    "tests/net_capture/test_visits.py",
+    "tests/net_capture/test_led_net.py",
+    "tests/cosim/test_digits.py",
+    "tests/tethered_deorbit/test_sky.py",
+    "tests/interop/test_ssp_tools.py",
+    "tests/cosim/test_ssp_export.py",
+    "tests/net_capture/test_rigging.py",
+    "tests/net_capture/test_near_pairs.py",
+    "tests/cases/test_beginnings.py",
+    "tests/tethered_deorbit/test_averaged.py",
+    "tests/tethered_deorbit/test_rigid.py",
+    "tests/resume/test_same_bits.py",
+    "tests/net_capture/test_slip_loss.py",
+    "tests/stability/test_command.py",
     "tests/net_capture/test_following.py",
     "tests/net_capture/test_own_net.py",
+    "tests/net_capture/test_shapes.py",
     "tests/net_capture/test_bending.py",
-    "tests/net_capture/test_capstan.py",
-    "tests/stability/test_command.py",
+    "tests/packaging/test_fmu.py",
     "tests/benchmarks/test_plain_net.py",
 )
 """Files that take longest, the longest first, so that no worker is left with one when the others are done. Of two that
@@ -76,6 +91,17 @@ def pytest_configure(config: pytest.Config) -> None:
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         kernels.keep()
         gc.disable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection(session: pytest.Session) -> Iterator[None]:
+    """Of two workers one reads the tests from their end: in a fresh checkout each compiles half of them, and finds the
+    bytecode of the others."""
+    if getattr(session.config, "workerinput", {}).get("workerid") == "gw1" and session.config.args == ["tests"]:
+        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+            with suppress(Exception, pytest.skip.Exception):  # told where the tests are collected
+                importlib.import_module(".".join(path.relative_to(session.config.rootpath).with_suffix("").parts))
+    return (yield)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

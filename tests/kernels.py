@@ -18,6 +18,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,30 @@ def keep() -> None:
         config.OPT, config.LOOP_VECTORIZE = config._OptLevel(3), 1  # type: ignore[attr-defined]
         config.CPU_NAME = config.CPU_FEATURES = None
         keeping.keep_in(cache_folder() / builds.COMMON)
+        share_wholes()
+
+
+def share_wholes() -> None:
+    """Have this process compile a kernel for Python once, however often tests write it down: two that are made from the
+    same have one dispatcher, which knows the types of its arguments apart.
+
+    Checked  tests/packaging/test_shared_kernels.py
+    """
+    from orbital import linking
+    from orbital.keys import Keys, NoKeyError
+
+    keys, made, known = Keys(), linking.whole, dict[tuple[str, int], Any]()
+
+    def whole(function: Any, options: dict[str, Any], signature: Any = None) -> Any:
+        parts = linking.parts
+        if signature is None:
+            with suppress(NoKeyError):
+                key = keys.of((function, sorted(options.items()))), id(parts)
+                _, dispatcher = known[key] = known.get(key) or (parts, made(function, options))
+                return dispatcher
+        return made(function, options, signature)
+
+    linking.whole = whole
 
 
 class Entry:

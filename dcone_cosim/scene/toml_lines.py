@@ -148,7 +148,9 @@ class _Walk:
 
 
 def deep_key(text: str) -> int | None:
-    """Line of the first key with more than `DEEPEST` parts, None when there is none."""
+    """Line of the first key with more than `DEEPEST` parts, None when there is none; that takes as many dots in it."""
+    if all(line.count(".") < DEEPEST for line in text.split("\n")):
+        return None
     match = _DEEP.search(text)
     return None if match is None else text.count("\n", 0, match.start()) + 1
 

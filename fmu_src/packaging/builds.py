@@ -43,17 +43,14 @@ from fmu_src.packaging import (
     tools,
 )
 from fmu_src.packaging.description import Experiment
-from fmu_src.packaging.platforms import KNOWN, PAGE, WIN64, Platform, host
+from fmu_src.packaging.platforms import KNOWN, WIN64, Platform, host
 
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
 """What settles by its version what comes out: the tools, and this package, whose version the description tells."""
 SOURCES = Path(__file__).parents[1]
 COMMON = "kernels"
 """The folder of a cache that has the kernels which choices of terms have in common."""
-FIRST = {
-    WIN64: "Windows on a machine takes minutes",
-    PAGE: "a page on a machine takes half a minute",
-}
+FIRST = {WIN64: "Windows on a machine takes minutes"}
 """Links before which a C library is built."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]

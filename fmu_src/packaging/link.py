@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import fmpy
 import ziglang
 
-from fmu_src.packaging import tools, universal
+from fmu_src.packaging import page_library, tools, universal
 from fmu_src.packaging.compile import ENTRY
 from fmu_src.packaging.platforms import Target
 
@@ -42,16 +42,17 @@ SECOND_PATH = {"x86_64_v3": "v3"}
 """What the entry of a second code path is called, for processor.h."""
 
 
-def clang(arguments: Sequence[object]) -> None:
+def clang(arguments: Sequence[object], environment: Mapping[str, str] | None = None) -> None:
     """Run it; BuildError with its last words if it fails.
 
     It knows a C library that it has built by the paths of its sources as seen from the working directory, and would
-    build it anew, half a minute for a page, wherever it is run from a folder above them: it runs in their own.
+    build it anew, minutes for Windows, wherever it is run from a folder above them: it runs in their own.
 
     Checked  tests/packaging/test_platforms.py
     """
     told = (os.path.abspath(one) if isinstance(one, Path) else str(one) for one in arguments)
-    tools.run("clang", [sys.executable, "-m", "ziglang", "cc", *told], place=Path(ziglang.__file__).parent)
+    command = [sys.executable, "-m", "ziglang", "cc", *told]
+    tools.run("clang", command, environment, place=Path(ziglang.__file__).parent)
 
 
 def is_page(target: Target) -> bool:
@@ -105,6 +106,5 @@ def _link_one(ir: Path, header: Path, library: Path, target: Target) -> None:
     elif "macos" in target.triple:
         # without these, the folder of this build, and the names of internal functions
         system = [f"-Wl,-install_name,@rpath/{library.name}", "-Wl,-x"]
-    clang(
-        ["-target", target.triple, *FLAGS, *SHIM_FLAGS, *kind, *search, *paths, *shim, *objects, "-o", library, *system]
-    )
+    words = ["-target", target.triple, *FLAGS, *SHIM_FLAGS, *kind, *search, *paths, *shim, *objects]
+    clang([*words, "-o", library, *system], page_library.environment() if is_page(target) else None)

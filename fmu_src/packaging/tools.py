@@ -18,8 +18,8 @@ _lock = Lock()
 
 def run(
     what: str, command: Sequence[str], environment: Mapping[str, str] | None = None, place: Path | None = None
-) -> None:
-    """Run a tool to its end, in a folder if one is named; BuildError with its last words if it fails."""
+) -> str:
+    """Run a tool to its end, in a folder if one is named; its words, BuildError with the last of them if it fails."""
     pipe, both = subprocess.PIPE, subprocess.STDOUT
     with subprocess.Popen(command, env=environment, cwd=place, stdout=pipe, stderr=both, text=True) as process:
         with _lock:
@@ -31,6 +31,7 @@ def run(
                 _running.discard(process)
     if process.returncode:
         raise BuildError(f"{what} failed:\n{words.strip()[-2000:]}")
+    return words
 
 
 def stop() -> None:

@@ -24,7 +24,9 @@ from fmu_src.packaging import builds, compile, link, platforms, tools, universal
 from tests.packaging import platform_cases
 from tests.packaging.platform_cases import CASES
 
-SMALL = "tethered_deorbit"
+SMALL, SMALLEST = "tethered_deorbit", "reel_control"
+EITHER = pytest.mark.parametrize("model", [SMALLEST, pytest.param(SMALL, marks=pytest.mark.evidence)])
+"""Shim and linking are the same for all models: the smallest shows what a library for another machine is."""
 FUNCTIONS = set(re.findall(r"FMI2_Export fmi2\w+TYPE\s+(fmi2\w+);", (link.HEADERS / "fmi2Functions.h").read_text()))
 FAST = ("-O3", "-s", "-shared", "-fPIC")
 """As the FMUs are linked: with other options zig would first build its own run-time library once more."""
@@ -40,10 +42,11 @@ def cache():
 
 @pytest.fixture(scope="session")
 def library(cache, tmp_path_factory):
-    """Library of the small model for a platform, in one of its places, unpacked."""
+    """Library of a model for a platform, in one of its places, unpacked."""
 
-    def make(platform, place=0):
-        fmu = platform_cases.build(SMALL, platform, cache)
+    def make(model, platform, place=0):
+        terms = CASES[model].terms if model in CASES else {}
+        fmu = builds.build(MODELS[model].interface(terms), cache, platform=platform)
         folder = platform.places[place].folder
         return platform_cases.unpack(fmu, tmp_path_factory.mktemp(platform.name), folder)[1]
 
@@ -63,9 +66,16 @@ def test_the_standard_names_44_functions():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("platform", [platforms.LINUX64, platforms.LINUX_AARCH64], ids=lambda p: p.name)
-def test_linux_library_needs_an_old_glibc_and_shows_the_interface_alone(platform, library):
-    binary = lief.parse(str(library(platform)))
+@pytest.mark.parametrize(
+    ("model", "platform"),
+    [
+        pytest.param(SMALL, platforms.LINUX64, id="tow-linux64"),
+        pytest.param(SMALLEST, platforms.LINUX_AARCH64, id="reel-linux-aarch64"),
+        pytest.param(SMALL, platforms.LINUX_AARCH64, id="tow-linux-aarch64", marks=pytest.mark.evidence),
+    ],
+)
+def test_linux_library_needs_an_old_glibc_and_shows_the_interface_alone(model, platform, library):
+    binary = lief.parse(str(library(model, platform)))
     assert set(binary.libraries) <= {"libc.so.6", "libm.so.6", "libdl.so.2"}
     versions = glibc_versions(binary)
     assert versions
@@ -95,33 +105,36 @@ def test_newer_glibc_would_be_seen(tmp_path):
     assert found[0] <= OLDEST < found[1]
 
 
+@EITHER
 @pytest.mark.slow
-def test_arm64_has_one_library_wherever_it_is_looked_for(library):
+def test_arm64_has_one_library_wherever_it_is_looked_for(model, library):
     """By the tuple of FMI 3.0, and where older loaders look: the same bytes, part of the universal file."""
-    assert library(platforms.LINUX_AARCH64).read_bytes() == library(platforms.LINUX_AARCH64, 1).read_bytes()
-    whole, part = (library(platforms.DARWIN64, place).read_bytes() for place in (0, 1))
+    one, other = (library(model, platforms.LINUX_AARCH64, place).read_bytes() for place in (0, 1))
+    assert one == other
+    whole, part = (library(model, platforms.DARWIN64, place).read_bytes() for place in (0, 1))
     assert len(part) > 10_000
     assert part in whole
     assert lief.MachO.parse(list(part)).at(0).header.cpu_type == lief.MachO.Header.CPU_TYPE.ARM64
 
 
+@EITHER
 @pytest.mark.slow
 @pytest.mark.parametrize(("place", "machines"), [(0, ["X86_64", "ARM64"]), (1, ["ARM64"])])
-def test_mac_library_is_universal_and_shows_the_interface_alone(library, place, machines):
+def test_mac_library_is_universal_and_shows_the_interface_alone(model, library, place, machines):
     """Linked only: no Mac runs these tests."""
-    parts = lief.MachO.parse(str(library(platforms.DARWIN64, place)))
+    parts = lief.MachO.parse(str(library(model, platforms.DARWIN64, place)))
     assert [p.header.cpu_type.name for p in parts] == machines
     for part in parts:
         assert {s.name.removeprefix("_") for s in part.exported_symbols} >= FUNCTIONS
         assert not any("dcone" in s.name for s in part.exported_symbols)
-        assert {x.name for x in part.libraries} == {f"@rpath/{SMALL}.dylib", "/usr/lib/libSystem.B.dylib"}
+        assert {x.name for x in part.libraries} == {f"@rpath/{model}.dylib", "/usr/lib/libSystem.B.dylib"}
         assert list(part.build_version.minos)[:1] == [11]
     assert parts.at(len(machines) - 1).has_code_signature  # an arm64 Mac loads nothing unsigned
 
 
 @pytest.mark.release
 def test_windows_library_shows_the_interface_alone(library):
-    binary = lief.parse(str(library(platforms.WIN64)))
+    binary = lief.parse(str(library(SMALL, platforms.WIN64)))
     assert binary.header.machine == lief.PE.Header.MACHINE_TYPES.AMD64
     exported = binary.get_export()
     assert exported.name == f"{SMALL}.dll"
@@ -133,7 +146,7 @@ def test_windows_library_shows_the_interface_alone(library):
 def test_clang_runs_where_its_own_files_are(monkeypatch, tmp_path):
     """It tells C libraries apart by paths seen from where it runs: from above its files it would build them anew."""
     told = []
-    monkeypatch.setattr(tools, "run", lambda what, command, place: told.append((command, place)))
+    monkeypatch.setattr(tools, "run", lambda what, command, environment, place: told.append((command, place)))
     monkeypatch.chdir(tmp_path)
     link.clang(["-c", Path("a.c"), "-o", tmp_path / "a.o", "-lm"])
     ((command, place),) = told

@@ -10,6 +10,7 @@ from fmu_src import instance
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
 from fmu_src.packaging import compile, tools
+from orbital.kernel import kernel
 from tests import kernels
 from tests.conftest import CAPTURE, FREE
 
@@ -40,6 +41,23 @@ def test_what_could_not_be_made_is_made_by_the_next(tmp_path):
         kernels.made_once(tmp_path / "x.ll", fail)
     assert not (tmp_path / "x.ll").exists()
     assert kernels.made_once(tmp_path / "x.ll", lambda path: path.write_text("whole")).read_text() == "whole"
+
+
+@pytest.mark.skipif(kernels.compiled_where_run(), reason="numba is asked for code that no library holds")
+def test_kernels_that_are_made_from_the_same_are_compiled_once():
+    def times(factor):
+        @kernel
+        def product(x):
+            return factor * x
+
+        return product
+
+    first, same, other = times(2.5), times(2.5), times(3.5)
+    assert first.dispatcher is same.dispatcher
+    assert other.dispatcher is not first.dispatcher
+    assert (first(2.0), same(2.0), other(2.0)) == (5.0, 5.0, 7.0)
+    assert (same(2), other(2)) == (5.0, 7.0)
+    assert len(first.dispatcher.overloads) == 2
 
 
 @pytest.fixture

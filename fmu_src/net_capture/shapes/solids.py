@@ -13,6 +13,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -104,11 +105,19 @@ def girth(points: Array, along: Array | None = None) -> tuple[float, Array]:
     Source   definition; Cauchy's formula for the perimeter, the mean width times pi
     Checked  tests/net_capture/test_pieces.py
     """
+    least, way = _girth(np.asarray(points, float).tobytes(), None if along is None else tuple(map(float, along)))
+    return least, np.array(way)
+
+
+@lru_cache(maxsize=256)
+def _girth(content: bytes, along: tuple[float, ...] | None) -> tuple[float, tuple[float, ...]]:
+    """It; the scenes of a sweep, and those read again, have one body among them."""
     from scipy.optimize import minimize
     from scipy.spatial import ConvexHull
 
+    points = np.frombuffer(content).reshape(-1, 3)
     corners = points[ConvexHull(points).vertices]
-    ways = directions(WAYS) if along is None else along[None, :]
+    ways = directions(WAYS) if along is None else np.array([along])
     first, second = _across(ways)
     x, y = corners @ first.T, corners @ second.T
     perimeter = np.zeros(len(ways))
@@ -123,7 +132,7 @@ def girth(points: Array, along: Array | None = None) -> tuple[float, Array]:
     options: Any = {"xatol": 1e-5, "fatol": 1e-8, "maxiter": 100}
     found = [minimize(round_it, way, method="Nelder-Mead", options=options) for way in starts]
     best = min(found, key=lambda each: float(each.fun))
-    return float(best.fun), np.asarray(best.x)
+    return float(best.fun), tuple(map(float, best.x))
 
 
 def _across(ways: Array) -> tuple[Array, Array]:
