@@ -60,7 +60,7 @@ def _tools() -> str:
     """Hash of what makes code of a kernel: versions, settings, and our own rules of linking."""
     settings = sorted((name, value) for name, value in os.environ.items() if name.startswith("NUMBA_"))
     versions = numba.__version__, llvmlite.__version__, np.__version__, platform.python_version(), platform.machine()
-    rules = (source(f"orbital.{name}") for name in ("kernel", "linking", "sooner", "places", "keeping", "keys"))
+    rules = (source(f"orbital.{name}") for name in ("kernel", "linking", "places", "keeping", "keys"))
     return digest(*versions, json.dumps(settings), *rules)
 
 

@@ -6,8 +6,8 @@ the time. Here a kernel that others call stops at its LLVM module. What is calle
 links the modules of all kernels below it, and these are optimised and compiled once, as one.
 
 `whole` and `part` make numba's dispatchers do so, through the context in which they lower; numba's version is pinned.
-What numba would do over and over with the same outcome is remembered, here and in `orbital.sooner`: for a tree of two
-hundred kernels half of the time.
+What numba would do over and over with the same outcome is remembered: for a tree of two hundred kernels a quarter of
+the time.
 
 Checked  tests/orbital/test_kernel.py
 """
@@ -28,10 +28,6 @@ from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
 from numba.core.cpu import CPUContext
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.typing.context import Context
-
-from orbital import sooner
-
-sooner.hasten()
 
 
 class PartLibrary(CPUCodeLibrary):
@@ -102,6 +98,10 @@ class PartDispatcher(CPUDispatcher):
     def get_call_template(self, args: Any, kws: Any) -> Any:
         plain: Callable[[Any], Any] = types.unliteral
         return super().get_call_template(tuple(map(plain, args)), {name: plain(kind) for name, kind in kws.items()})
+
+
+# The long description of a record, which the compiler notes of every pass over every kernel, is written once.
+types.Record.__repr__ = cache(types.Record.__repr__)  # type: ignore[method-assign]
 
 
 class PartContext(CPUContext):
