@@ -45,7 +45,7 @@ CORNERS = 24
 THROUGH = 1e-4
 """Metres by which it lies deeper where it has gone through: one that grazes is asked again a substep on."""
 LONGER = 1e-6
-"""Metres by which a way that goes over to another body may be longer."""
+"""Metres by which a way that goes over to another body may be longer, and one that goes round one more shorter."""
 NEAR_CORNER = 0.02
 """Metres between bends on edges of two bodies, from where on both are to be of one: much farther than bends move in a
 substep."""
@@ -108,11 +108,14 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         """Let the way go round a body that has come to lie across a piece of it, on the first side on which it is no
         longer than it may be; else it stays as it was. Over how many edges it bends then, 0: it can not.
 
+        One body more in the way makes it no shorter, unless it slides over a corner: else another visit was lost.
+
         Of faces, wall and lean: leans first where a visit has ended.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        before = max(expected, length_of(p, edges) if edges > 0 else expected)
+        least = length_of(p, edges) if edges > 0 else distance(p.wrap_from, p.wrap_to)
+        before = max(expected, least)
         keep(p, words, place)
         left = p.visits_left
         for attempt in range(len(SIDES) + 1):
@@ -127,7 +130,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             if found > 0:
                 way = length_of(p, found)
                 within = JUMP + share * p.solver_substep * abs(rate(p, work, a, b, found))
-                if way <= before + max(within, STEP) or (attempt == len(SIDES) and way <= length):
+                whole = way >= least - LONGER or p.visits_moved > 0
+                if whole and (way <= before + max(within, STEP) or (attempt == len(SIDES) and way <= length)):
                     return found
         recall(p, words, place)
         return 0

@@ -6,8 +6,6 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-import numpy as np
-
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.net_capture.appendage import placed
 from fmu_src.net_capture.entered import by_the_end
@@ -18,9 +16,7 @@ from fmu_src.net_capture.pull_off import PULLED, WAITING
 from fmu_src.net_capture.schemes import Needs
 from fmu_src.net_capture.self_contact.holding import holding_speed, thread_thickness
 from fmu_src.net_capture.shapes import Point
-from fmu_src.net_capture.shapes.pieces import SHELL
 from fmu_src.net_capture.shapes.seams import open_seams
-from fmu_src.net_capture.shapes.union import PIECES
 from fmu_src.net_capture.wrapping import CONVEX
 
 Values = Mapping[str, float]
@@ -47,12 +43,6 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
                 f"pieces {one} and {two} touch in a line or a point, or leave a narrow slit between them: there nodes "
                 "of the net can slide beneath the one that stands out; let it reach in by a centimetre or two",
             )
-    if "wrap" in terms and terms.get("target") == "union" and SHELL in np.asarray(values[PIECES])[:, 0]:
-        yield Caution(
-            "wrap.bends",
-            "now and then a thread still goes through the wall of a shell, at its rims and where pieces lie flush on "
-            "it: wrap.passed and wrap.passed_slack count it; look at the picture before trusting what is held",
-        )
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
     if "self_contact" in terms:

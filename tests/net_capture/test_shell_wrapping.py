@@ -260,6 +260,20 @@ def test_a_way_held_at_the_end_of_an_edge_goes_over_to_no_body_through_others():
     assert inside(bodies, bends[:-1], bends[1:]).max() < 1e-3
 
 
+def test_round_one_body_more_a_way_is_no_shorter():
+    """It comes down past the cap's straight rim, and then bends there too: the wall, which it then runs into first,
+    would have it leave the rim over which it lies, and be shorter on another side."""
+    seek, bodies, rim = Drawn(FAIRING), bodies_and_faces(FAIRING), at(59.09, 1.2912, 2.278)
+    ends = np.array((at(98.88, 0.7762, 2.2781), at(55.67, 1.3063, 2.1554)))
+    seek.lies([bent(11, (4, 0), rim)], 1.0)
+    ways = seek.drawn((ends, ends - [[0.0, 0.0, 4e-4], [0.0, 0.0, 0.0]]), 4, 0.9)
+    bends = seek.bends()
+    assert seek.lost == (0, 0)
+    assert np.ptp(ways) < 1e-5
+    assert len(bends) == 4
+    assert inside(bodies, bends[:-1], bends[1:]).max() < 1e-3
+
+
 def test_a_way_whose_bend_lies_as_deep_in_a_plate_as_ways_do_goes_round_that():
     """It has slid over a corner of the boom, past the ledge beside the plate's edge, and is held where its edge runs
     into that: as deep in the plate as ways lie, so whether that is in or out is rounding."""
