@@ -27,11 +27,11 @@ BACK = {
     "capture.duration": "14 s",
 }
 CASES: dict[str, tuple[str, dict[str, Any], int]] = {
-    "fairing": ("fairing", {}, 3),
-    "fairing, its back to the net": ("fairing", BACK, 6),
-    "fairing-holds": ("fairing-holds", {}, 3),
-    "big-panel": ("big-panel", {}, 3),
-    "big-panel-wrapped": ("big-panel-wrapped", {}, 5),
+    "fairing": ("fairing", {}, 2),
+    "fairing, its back to the net": ("fairing", BACK, 4),
+    "fairing-holds": ("fairing-holds", {}, 2),
+    "big-panel": ("big-panel", {}, 2),
+    "big-panel-wrapped": ("big-panel-wrapped", {}, 3),
 }
 """Scene, what is changed of it, and how many shots."""
 
