@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import html
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 from fmu_src.interface import INDEX, Interface, Variable
 from fmu_src.packaging.dependence import inputs_of, names_by_slot
@@ -41,8 +41,6 @@ def page(interface: Interface, folder: Path, scene: str = "") -> str:
 
     Checked  tests/packaging/test_page_and_picture.py
     """
-    from markdown_it import MarkdownIt
-
     model = interface.model
     readme = folder / "README.md"
     text = _lower_headings(readme.read_text()) if readme.exists() else ""
@@ -55,7 +53,7 @@ def page(interface: Interface, folder: Path, scene: str = "") -> str:
         _faults(interface),
         _messages(),
     ]
-    body: Any = MarkdownIt("commonmark", {"html": False}).enable("table").render("\n\n".join(sections))
+    body = "".join(map(_rendered, filter(None, sections)))
     title = model.name.replace("_", " ").capitalize()
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
@@ -63,6 +61,15 @@ def page(interface: Interface, folder: Path, scene: str = "") -> str:
         f'<p>{html.escape(model.summary)}</p>\n<p><img src="../model.png" alt="{html.escape(title)}"></p>\n'
         f"{body}</body></html>\n"
     )
+
+
+@lru_cache(maxsize=64)
+def _rendered(text: str) -> str:
+    """Most of a page is that of the model, whatever the values: a process that writes many renders it once."""
+    from markdown_it import MarkdownIt
+
+    html: str = MarkdownIt("commonmark", {"html": False}).enable("table").render(text)
+    return html
 
 
 def _lower_headings(text: str) -> str:

@@ -263,7 +263,7 @@ def until(condition: Any, patience: float = 240.0) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_killed_and_gone_on_with(template: Path, tmp_path: Path) -> None:
     """The client is killed in the midst of it: what is there is kept, and in the end the table has the same bits."""
-    file = put_campaign(put_scene(tmp_path / "scene", template).parent, DRIFT.replace("n = 60", "n = 300"))
+    file = put_campaign(put_scene(tmp_path / "scene", template).parent, DRIFT.replace("n = 60", "n = 150"))
     once, out = (
         commands.campaign(file, tmp_path / "whole", Progress(), "processes", with_figures=False).folder,
         tmp_path / "out",

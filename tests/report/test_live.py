@@ -7,6 +7,7 @@ import shlex
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -96,7 +97,9 @@ def asked(place: Path) -> Iterator[Asked]:
         browser.close()
 
 
+@cache
 def page_of(run: Path) -> Path:
+    """Written once, for all tests that look at it."""
     path = run.parent / f"{run.name}.html"
     path.write_text(of_folder(run, path, progress=Progress()))
     return path
