@@ -99,13 +99,14 @@ def _part_company(part: ReadComponent, model: build.Model, tables: Mapping[str, 
         part.terms[group_name] = carried[0]
         part.refused.add(group_name)
     clashes: dict[str, list[str]] = {}
-    several = {name: "1" for name in part.following if name in build.FAMILIES}  # however many follow
-    for group_name, other in model.clashing(part.terms | several):
+    # however many follow
+    terms = part.terms | {name: "1" for name in part.following if name in build.FAMILIES}
+    for group_name, other in model.clashing(terms):
         clashes.setdefault(group_name, []).append(f"[{dotted((*part.path, other))}]")
     for group_name, others in clashes.items():
         part.refused.add(group_name)
         group = model.groups[group_name]
-        text = f"cannot go together with {' and '.join(others)}{group.terms[part.terms[group_name]].because}"
+        text = f"cannot go together with {' and '.join(others)}{group.terms[terms[group_name]].because}"
         if group_name in build.FAMILIES or group_name in part.following:
             mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
             part.terms.pop(group_name, None)
