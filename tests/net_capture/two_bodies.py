@@ -170,3 +170,10 @@ def free_motion(law):
 
 def design_attitude(scene, tables):
     return Rotation.from_quat(scene.p["target_pose"], scalar_first=True) * body_turn(tables)[0].inv()
+
+
+def boxes(posed):
+    """Place, turn and half size of each box of `WING` as it is posed [m], and whether it swings."""
+    for entry, first in zip(posed, WING, strict=True):
+        own = Rotation.from_quat(entry["attitude"], scalar_first=True)
+        yield np.array(entry["position"]), own, 0.5 * np.array(entry["size"]), first.get("hinged", False)

@@ -22,7 +22,7 @@ def close_round(half, rows):
     c, R, h       of each its middle, matrix to the body axes, and half the edges of its own box
 
     Valid    kinds as `union.piece_distance` has them; round pieces are held by the boxes round them
-    Checked  tests/net_capture/test_hinged_contact.py
+    Checked  tests/net_capture/test_hinged_bounds.py
     """
     for i in range(3):
         half[i] = 0.0

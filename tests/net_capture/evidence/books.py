@@ -196,12 +196,12 @@ def captures(name: str, settings: Mapping[str, Any] | None = None) -> Iterator[t
         yield shot, Recorded(columns, told[shot]["parameters"], told[shot]["terms"]), done.status
 
 
-def write(rows: list[dict[str, Any]]) -> None:
-    """A row on each line, by the names of scenes."""
-    told = {"command": COMMAND, "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}}
+def write(path: Path, command: str, rows: list[dict[str, Any]], *order: str) -> None:
+    """A row on each line, in order of these of its entries, beneath the command and the versions that made them."""
+    told = {"command": command, "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}}
     head = json.dumps(told, indent=1).removesuffix("\n}")
-    lines = ",\n".join(json.dumps(row) for row in sorted(rows, key=lambda row: (row["scene"], row["phase"])))
-    RESULT.write_text(f'{head},\n "rows": [\n{lines}\n ]\n}}\n')
+    lines = ",\n".join(json.dumps(row) for row in sorted(rows, key=lambda row: [row[name] for name in order]))
+    path.write_text(f'{head},\n "rows": [\n{lines}\n ]\n}}\n')
 
 
 def main(*only: str) -> None:
@@ -213,7 +213,7 @@ def main(*only: str) -> None:
         for phase, of, status in captures(name):
             stored.append({"scene": name, "phase": phase, "status": status, **judged(of)})
             print(json.dumps(stored[-1]), f"{time.process_time() - began:.1f} CPU-s", flush=True)
-        write(stored)
+        write(RESULT, COMMAND, stored, "scene", "phase")
 
 
 if __name__ == "__main__":

@@ -12,12 +12,11 @@ from __future__ import annotations
 import json
 import sys
 import time
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from tests import kernels
-from tests.net_capture.evidence.books import captures, judged
+from tests.net_capture.evidence.books import captures, judged, write
 
 RESULT = Path(__file__).with_name("wrapped.json")
 COMMAND = "python -m tests.net_capture.evidence.wrapped"
@@ -47,14 +46,6 @@ def shot(scene: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
     return {"status": status, **told, "bent": int(of.columns["wrap.threads"].max()), "open": book["open"]}
 
 
-def write(rows: list[dict[str, Any]]) -> None:
-    """A row on each line, by cases and seeds."""
-    told = {"command": COMMAND, "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}}
-    head = json.dumps(told, indent=1).removesuffix("\n}")
-    lines = ",\n".join(json.dumps(row) for row in sorted(rows, key=lambda row: (row["case"], row["seed"])))
-    RESULT.write_text(f'{head},\n "rows": [\n{lines}\n ]\n}}\n')
-
-
 def main(*only: str) -> None:
     """Every case, or those named anew, and what is stored of the others as it is."""
     stored = json.loads(RESULT.read_text())["rows"] if only and RESULT.exists() else []
@@ -65,7 +56,7 @@ def main(*only: str) -> None:
             began = time.process_time()
             stored.append({"case": case, "seed": seed, **shot(scene, settings, seed)})
             print(json.dumps(stored[-1]), f"{time.process_time() - began:.1f} CPU-s", flush=True)
-            write(stored)
+            write(RESULT, COMMAND, stored, "case", "seed")
 
 
 if __name__ == "__main__":
