@@ -274,6 +274,24 @@ def test_round_one_body_more_a_way_is_no_shorter():
     assert inside(bodies, bends[:-1], bends[1:]).max() < 1e-3
 
 
+@pytest.mark.parametrize(
+    ("fallen", "length", "counted"), [(0.0, 1.5, (0, 0)), (0.0, 0.5, (0, 0)), (0.01, 1.5, (0, 1)), (0.01, 0.5, (1, 0))]
+)
+def test_a_thread_that_is_lost_is_counted_where_it_becomes_shorter(fallen, length, counted):
+    """An edge that it can not go on over, since one end does not see its face: it is sought anew, and is as long as it
+    was, or shorter by a centimetre; it is slack, or taut."""
+    seek = Drawn(laid(box((1.6, 1.8, 2.0)), box((0.1, 0.1, 0.1), (0.0, 0.0, 1.04))))
+    a, b = np.array((-0.798 + 1e-9, -0.9118, -0.7548)) + BASE, np.array((-0.798, 0.0512, -0.9981)) + BASE
+    lost = [bent(0, (1, 5), np.array((-0.798, 0.0433, -0.998)))]
+    seek.lies(lost, 1.0)
+    way = seek(a, b, length=1.5)
+    seek.p.wrap_passed = seek.p.wrap_passed_slack = 0
+    seek.lies(lost, way + fallen)
+    assert seek(a, b, length=length) == pytest.approx(way, abs=1e-12)
+    assert seek.p.visits_lost == 1
+    assert seek.lost == counted
+
+
 def test_a_way_whose_bend_lies_as_deep_in_a_plate_as_ways_do_goes_round_that():
     """It has slid over a corner of the boom, past the ledge beside the plate's edge, and is held where its edge runs
     into that: as deep in the plate as ways lie, so whether that is in or out is rounding."""
